@@ -15,9 +15,9 @@ namespace explica::inflation {
 namespace {
 
 /// Columns of an unfolding that mean nothing where there are neither surroundings nor a knot
-/// energy, what one viewpoint sees, and those of terms that a closed surface does not feel.
-constexpr std::array<std::string_view, 4> kWithout = {"seen", "collar_stretch_mean",
-                                                      "collar_stretch_max", "seconds_repulsion"};
+/// energy, beside those of terms that a closed surface does not feel.
+constexpr std::array<std::string_view, 3> kWithout = {"collar_stretch_mean", "collar_stretch_max",
+                                                      "seconds_repulsion"};
 
 bool hasMeaning(const std::string& column) {
   if (std::find(kWithout.begin(), kWithout.end(), column) != kWithout.end()) return false;

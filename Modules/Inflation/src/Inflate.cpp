@@ -166,7 +166,7 @@ class Inflation {
     const double aim = aimFor(options_.targetSeen), drive = unfolder_.state().drive;
     const bool slow = !looks_.empty() && now.visibility - looks_.back().visibility < kSlowGain;
     if (slow && now.visibility < aim && drive < kLargestDrive) {
-      unfolder_.steer(std::min(drive * driveFactor(now.visibility, aim), kLargestDrive));
+      unfolder_.raiseDrive(std::min(driveFactor(now.visibility, aim), kLargestDrive / drive));
     }
     looks_.push_back(now);
   }

@@ -43,7 +43,6 @@ std::vector<EvolutionColumn> listColumns() {
                                        column("area_error_mean", "%.6g", &R::areaErrorMean),
                                        column("area_error_max", "%.6g", &R::areaErrorMax),
                                        column("edge_strain_mean", "%.6g", &R::edgeStrainMean),
-                                       column("seen", "%.6f", &R::seen),
                                        column("collar_stretch_mean", "%.6g", &R::collarStretchMean),
                                        column("collar_stretch_max", "%.6g", &R::collarStretchMax)};
   for (const TermInfo& info : kTerms) {

@@ -61,10 +61,10 @@ void visitRecord(const Access& access, Record& r) {
   for (auto* number : {&r.iteration, &r.contacts, &r.solves}) access(*number);
   access(r.phase);
   for (auto* number :
-       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.seen,
-        &r.collarStretchMean, &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter,
-        &r.nearestContact, &r.safeStep, &r.step, &r.largestMove, &r.damping, &r.phases.visibility,
-        &r.phases.repulsion, &r.phases.collision, &r.phases.solve, &r.seconds}) {
+       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.collarStretchMean,
+        &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
+        &r.step, &r.largestMove, &r.damping, &r.phases.visibility, &r.phases.repulsion,
+        &r.phases.collision, &r.phases.solve, &r.seconds}) {
     access(*number);
   }
   for (auto& energy : r.energies.values) access(energy);
@@ -77,11 +77,15 @@ void visitRun(const Access& access, Run& run) {
   auto& s = run.state;
   access(s.positions);
   access(s.multipliers);
-  for (auto* number : {&s.damping, &s.areaStiffness, &s.drive}) {
+  for (auto* number :
+       {&s.damping, &s.areaStiffness, &s.drive, &s.lift, &s.collarWidth, &s.look.seen}) {
     access(*number);
   }
-  for (auto* number : {&s.iteration, &run.best.iteration}) access(*number);
+  for (auto* number : {&s.driveIteration, &s.ways, &s.iteration, &s.look.iteration})
+    access(*number);
   access(s.stalled);
+  access(run.best.iteration);
+  for (auto* number : {&run.best.visibility, &run.best.strain, &run.best.seen}) access(*number);
   access(run.best.moving);
   access.size(run.history);
   for (auto& record : run.history) visitRecord(access, record);

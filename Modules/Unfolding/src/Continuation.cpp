@@ -11,10 +11,8 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr int kWindow = 10;              // iterations in which a run at rest hardly changes
-constexpr double kSunk = 0.01;           // of the region's area: less than that below is no reason
-constexpr double kNear = 2 * kAccuracy;  // of the visibility's aim
-constexpr double kMostSteering = 1.15;   // factor of the visibility term a step
+constexpr int kWindow = 10;             // iterations in which a run at rest changes by half of that
+constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
 
 void requireUsable(const UnfoldOptions& options) {
   if (options.targetVisibility &&
@@ -40,15 +38,15 @@ double limitOf(const std::vector<IterationRecord>& history, double IterationReco
 }
 
 /// The most that visibility, or strain by what it is worth, has changed over the window; by how
-/// much the visibility has risen where nothing else is sought (the thesis's flow); infinity of runs
-/// that are not as long, or where too little of the region is seen but more and more.
-double changeOver(const std::vector<IterationRecord>& history, const UnfoldOptions& options) {
-  if (history.size() <= kWindow) return kInfinity;
+/// much the visibility has risen where nothing else is sought (the thesis's flow); infinity if it
+/// is not that long ago that the run was changed from outside.
+double changeOver(const std::vector<IterationRecord>& history, int since,
+                  const UnfoldOptions& options) {
   const IterationRecord& last = history.back();
+  if (last.iteration - since < kWindow || history.size() <= kWindow) return kInfinity;
   const IterationRecord& then = history[history.size() - 1 - kWindow];
   const double rise = last.visibility - then.visibility;
   if (options.unfolder.method == Method::Thesis) return rise;
-  if (last.seen < kGoalSeen && !(last.seen - then.seen < kAccuracy / 2)) return kInfinity;
   return std::max(std::abs(rise),
                   std::abs(last.edgeStrainMean - then.edgeStrainMean) / options.trade);
 }
@@ -59,6 +57,17 @@ double largestDrive(const UnfoldOptions& options) {
   const double share = kGoalStrain / options.unfolder.yieldStrain;
   const double slope = 2 * kGoalStrain / std::sqrt(1 + share * share);
   return options.trade * options.unfolder.weights[Term::Spring] * slope;
+}
+
+/// True if too little of the region is seen, but more from one look to the next.
+bool isStillAppearing(Unfolder& unfolder) {
+  const Look before = unfolder.state().look;
+  const bool looked = before.iteration >= 0;
+  if (looked && unfolder.state().iteration - before.iteration < kWindow / 2) {
+    return before.seen < kGoalSeen;
+  }
+  const double seen = unfolder.look();
+  return seen < kGoalSeen && (!looked || seen > before.seen + kAccuracy);
 }
 
 }  // namespace
@@ -80,55 +89,63 @@ Continuation::Continuation(const UnfoldOptions& options) : options_(options) {
 
 /// Where a run is and where it leads.
 struct Continuation::Outlook {
-  double aim = 1;             ///< visibility to aim at
-  double visibility = kNaN;   ///< that the run is bound for
+  const IterationRecord& last;
   double change = kInfinity;  ///< over the window, of visibility or what strain is worth
-  bool rests = false;         ///< nothing changes, and the visibility term's strength is at its end
-  bool kept = false;          ///< areas are
-  bool rises = false;         ///< the region, which is below its surroundings
+  double visibility = kNaN;   ///< that the run is bound for
+  double aim = 1;             ///< visibility to aim at
+  bool strongest = false;     ///< the visibility term is at its end
+  /// Whether steering could still change anything.
+  [[nodiscard]] bool isWeighed() const { return strongest || visibility > aim - 2 * kAccuracy; }
+  [[nodiscard]] bool rests() const { return change < kAccuracy / 2; }
 };
 
 Continuation::Outlook Continuation::outlook(const Unfolder& unfolder,
                                             const std::vector<IterationRecord>& history) const {
-  Outlook now;
-  now.aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
+  Outlook now{history.back()};
+  now.change = changeOver(history, unfolder.state().driveIteration, options_);
   now.visibility = limitOf(history, &IterationRecord::visibility);
-  now.change = changeOver(history, options_);
-  const bool strongest = unfolder.state().drive >= largestDrive(options_);
-  now.rests = now.change < kAccuracy / 2 && (strongest || now.visibility > now.aim - kNear);
-  now.kept = history.back().areaErrorMean <= options_.areaTolerance;
-  now.rises = now.change > kNear && unfolder.sunkShare() > kSunk;
+  now.aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
+  now.strongest = unfolder.state().drive >= (1 - 1e-9) * largestDrive(options_);
   return now;
 }
 
-Termination Continuation::endOf(const Outlook& now, const IterationRecord& last) const {
+Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
   const auto& target = options_.targetVisibility;
+  const IterationRecord& last = now.last;
   const bool reached = target && last.visibility >= *target;
   if (options_.unfolder.method == Method::Thesis) {
     if (reached) return Termination::TargetReached;
-    if (now.change >= kAccuracy / 2) return Termination::NotRun;
+    if (!now.rests()) return Termination::NotRun;
     return target ? Termination::Stalled : Termination::Converged;
   }
-  const bool enough = !target && merit(last, options_) > kAccuracy;
-  if (now.rises || !now.kept || !(enough || now.rests)) return Termination::NotRun;
-  if (target && !reached) return Termination::Stalled;
-  return target ? Termination::TargetReached : Termination::Converged;
+  if (unfolder.isHeldBelow()) return Termination::NotRun;
+  const bool enough =
+      !target && merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
+  const bool kept = last.areaErrorMean <= options_.areaTolerance;
+  if (!kept || !(enough || (now.rests() && now.isWeighed()))) return Termination::NotRun;
+  if (target) return reached ? Termination::TargetReached : Termination::Stalled;
+  return isStillAppearing(unfolder) ? Termination::NotRun : Termination::Converged;
 }
 
 void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {
+  unfolder.steer(Phase::Opening, 1);
   if (options_.unfolder.method == Method::Thesis) return;
+  if (unfolder.isHeldBelow()) {
+    if (now.change < 2 * kAccuracy) unfolder.makeWay();  // it hardly opens any more
+    return;
+  }
   const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
-  if (now.rises) return unfolder.steer(drive, Phase::Opening);
-  const bool slow = now.rests || (drive >= most && now.change < 3 * kAccuracy);
-  const bool settles = !now.kept && (slow || now.visibility > now.aim - kNear);
-  unfolder.steer(std::min(most, drive * steering(now.visibility, now.aim)),
-                 settles ? Phase::Settling : Phase::Weighing);
+  const bool slow = now.rests() || (drive >= most && now.change < 3 * kAccuracy);
+  const bool kept = now.last.areaErrorMean <= options_.areaTolerance;
+  const bool settles = !kept && (slow || now.visibility > now.aim - 2 * kAccuracy);
+  unfolder.steer(settles ? Phase::Settling : Phase::Weighing,
+                 std::min(most, drive * steering(now.visibility, now.aim)) / drive);
 }
 
 Termination Continuation::next(Unfolder& unfolder,
                                const std::vector<IterationRecord>& history) const {
   const Outlook now = outlook(unfolder, history);
-  const Termination end = endOf(now, history.back());
+  const Termination end = endOf(unfolder, now);
   if (end != Termination::NotRun) return end;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
   steer(unfolder, now);

@@ -26,9 +26,8 @@ constexpr double kHoldShare = 0.25;
 constexpr double kLeastArea = 1e-12;
 // Of the mean edge: edges far shorter must not rule the rest.
 constexpr double kShortShare = 0.1;
-// Of the radius of a disc of the region's area: how wide a collar is by default.  Where the region
-// has to rise it is as long as a wall of that height that leans by half a right angle, if that is
-// more.
+// Of the radius of a disc of the region's area, or of how far the region has to rise if that is
+// more: how wide a collar is by default.
 constexpr double kCollarShare = 0.6;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
@@ -98,8 +97,8 @@ void chooseMoving(PatchSetup& s, const visibility::Viewpoints& viewpoints,
                   const UnfolderOptions& options) {
   s.patch.room = findRoom(s.mesh, s.region, viewpoints);
   if (options.surround == Surround::Elastic) {
-    s.collarWidth = options.collarWidth.value_or(
-        std::max(kCollarShare * s.patch.room.radius, std::sqrt(2.0) * s.patch.room.depth));
+    s.collarWidth = options.collarWidth.value_or(kCollarShare *
+                                                 std::max(s.patch.room.radius, s.patch.room.depth));
   }
   s.reach = reachOf(s, options.surround);
   for (std::int32_t v = 0; v < s.reach.size(); ++v) {

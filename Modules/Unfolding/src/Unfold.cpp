@@ -30,6 +30,16 @@ Positions movingOnly(const Unfolder& unfolder) {
   return rowsOf(unfolder.state().positions, unfolder.movingVertices());
 }
 
+/// The same state once more vertices move than did then: those stood where they stand at rest.
+void addStanding(const Unfolder& unfolder, const std::vector<std::int32_t>& movedThen,
+                 Positions& state) {
+  Positions all = unfolder.reference().positions;
+  for (std::size_t i = 0; i < movedThen.size(); ++i) {
+    all.row(movedThen[i]) = state.row(static_cast<Eigen::Index>(i));
+  }
+  state = rowsOf(all, unfolder.movingVertices());
+}
+
 void requirePositive(double visibility) {
   if (visibility > 0) return;
   throw InvalidInput("region: its average visibility is " + std::to_string(visibility) +
@@ -44,18 +54,53 @@ void tellProgress(const Monitor& monitor, const IterationRecord& now, double ini
   monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0), line);
 }
 
+/// Whether it pays to go back from a state.
+bool isWorse(const IterationRecord& state, const BestState& than, const UnfoldOptions& options,
+             double seen) {
+  if (options.targetVisibility) return state.visibility < than.visibility - kAccuracy;
+  return merit(state.visibility, state.edgeStrainMean, seen, options.trade) <
+         merit(than.visibility, than.strain, than.seen, options.trade) - kAccuracy;
+}
+
+/// Share of the region that is seen in the present state, if anybody has begun to ask.
+double seenIfAsked(const Unfolder& unfolder) {
+  const Look& look = unfolder.state().look;
+  if (look.iteration < 0) return kNaN;
+  return look.iteration == unfolder.state().iteration ? look.seen : unfolder.seenShare();
+}
+
+/// Takes note of a state if it keeps areas and is better than all before.
+void consider(const Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
+  const IterationRecord& now = unfolder.record();
+  if (now.areaErrorMean > options.areaTolerance) return;
+  const double seen = seenIfAsked(unfolder);
+  if (!isBetter(now, best, options.targetVisibility.has_value(), seen, options.trade)) return;
+  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), seen};
+}
+
+/// Where the first look shows too little, its state is the best so far: nobody knows what was seen
+/// of earlier ones.
+void considerLook(const Unfolder& unfolder, bool isFirst, BestState& best) {
+  const IterationRecord& now = unfolder.record();
+  const Look& look = unfolder.state().look;
+  if (!isFirst || look.iteration != now.iteration || look.seen >= kGoalSeen) return;
+  best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), look.seen};
+}
+
 /// The state to give back: the last, or the best seen if the last is worse.
-void chooseState(const Unfolder& unfolder, const BestState& best, const UnfoldOptions& options,
-                 UnfoldResult& result) {
+/// @return the share seen of its region's area
+double chooseState(const Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
+                   const BestState& best, const UnfoldOptions& options, UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;
-  const IterationRecord& kept = result.history[static_cast<std::size_t>(best.iteration)];
-  if (merit(unfolder.record(), options) >= merit(kept, options) - kAccuracy) return;
+  const double seen = unfolder.seenShare();
+  if (!isWorse(unfolder.record(), best, options, seenIfAsked(unfolder))) return seen;
   const auto& moving = unfolder.movingVertices();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
   }
   result.iteration = best.iteration;
+  return visibility::seenShare(result.mesh, unfolder.region().faces, viewpoints);
 }
 
 /// The visibility that counts as reached.
@@ -161,10 +206,11 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     path = resume->path;
     best = resume->best;
     if (best.moving.rows() == 0) {  // a state that no run of this function left
-      best = {unfolder.state().iteration, movingOnly(unfolder)};
+      best = {unfolder.state().iteration, unfolder.record().visibility,
+              unfolder.record().edgeStrainMean, movingOnly(unfolder)};
     }
   } else {
-    best = {0, movingOnly(unfolder)};
+    best = {0, initial, 0, movingOnly(unfolder)};
     result.history.push_back(unfolder.record());
   }
   if (options.frames > 0 && path.empty()) path.push_back(movingOnly(unfolder));
@@ -176,7 +222,14 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     // Before the continuation, which steers: a run that goes on from here is steered once.
     if (monitor.shouldStop()) return Termination::Interrupted;
     if (!budget.fits(elapsed())) return Termination::MaxTime;
+    const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
+    const bool isFirstLook = unfolder.state().look.iteration < 0;
     const Termination byItself = continuation.next(unfolder, result.history);
+    considerLook(unfolder, isFirstLook, best);
+    if (unfolder.movingVertices().size() != movedThen.size()) {
+      addStanding(unfolder, movedThen, best.moving);
+      for (Positions& state : path) addStanding(unfolder, movedThen, state);
+    }
     if (byItself != Termination::NotRun) return byItself;
     const double before = elapsed();
     const bool moved = unfolder.step();
@@ -187,15 +240,10 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
     result.history.push_back(unfolder.record());
     result.history.back().seconds = earlier + elapsed();
     if (options.frames > 0) path.push_back(movingOnly(unfolder));
-    const IterationRecord& now = result.history.back();
-    const IterationRecord& then = result.history[static_cast<std::size_t>(best.iteration)];
-    if (now.areaErrorMean <= options.areaTolerance && merit(now, options) > merit(then, options)) {
-      best = {now.iteration, movingOnly(unfolder)};
-    }
+    consider(unfolder, options, best);
     tellProgress(monitor, unfolder.record(), initial, goal);
   }
-  chooseState(unfolder, best, options, result);
-  const double seen = visibility::seenShare(result.mesh, unfolder.region().faces, viewpoints);
+  const double seen = chooseState(unfolder, viewpoints, best, options, result);
   judge(options, seen, monitor, result);
   std::vector<Positions> whole = path;
   if (options.frames > 0) path.resize(static_cast<std::size_t>(result.iteration) + 1);
@@ -219,15 +267,20 @@ Point originNear(const Point& middle) {
   return middle.norm() > kNear ? Point(middle.array().round()) : Point(Point::Zero());
 }
 
-double merit(const IterationRecord& state, const UnfoldOptions& options) {
-  if (options.targetVisibility) return state.visibility;
-  const double spare = std::min(state.visibility - kGoalVisibility,
-                                (kGoalStrain - state.edgeStrainMean) / options.trade);
-  return state.seen < kGoalSeen ? std::min(spare, state.seen - kGoalSeen) : spare;
+double merit(double visibility, double strain, double seen, double trade) {
+  const double spare = std::min(visibility - kGoalVisibility, (kGoalStrain - strain) / trade);
+  return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;
 }
 
 bool meetsGoals(double goal, double visibility, double seen, double strain) {
   return visibility >= goal && seen >= std::min(goal, kGoalSeen) && strain <= kGoalStrain;
+}
+
+bool isBetter(const IterationRecord& state, const BestState& than, bool towardsTarget, double seen,
+              double trade) {
+  if (towardsTarget) return state.visibility > than.visibility;
+  return merit(state.visibility, state.edgeStrainMean, seen, trade) >
+         merit(than.visibility, than.strain, than.seen, trade);
 }
 
 UnfolderOptions solverOptions(const UnfoldOptions& options) {

@@ -15,7 +15,14 @@
 #include <cmath>
 
 namespace explica::unfolding {
-namespace {}  // namespace
+namespace {
+
+constexpr double kSunk = 0.01;   // of the region's area: less than that below is no reason
+constexpr int kMostWays = 3;     // times that surroundings are asked to part further ...
+constexpr double kWiden = 1.5;   // ... by this factor of the collar's width ...
+constexpr double kStronger = 2;  // ... and this one of the lift
+
+}  // namespace
 
 Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
                                          visibility::Viewpoints eyes, const UnfolderOptions& chosen)
@@ -26,6 +33,7 @@ Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
   state.positions = setup.mesh.positions;
   state.multipliers = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.patch.regionFaces));
   state.areaStiffness = options.weights[Term::Area];
+  state.collarWidth = setup.collarWidth;
   makeKnot(state.positions);
   measure(record);
 }
@@ -33,6 +41,14 @@ Unfolder::Implementation::Implementation(TriangleMesh mesh, Region region,
 void Unfolder::Implementation::standAt(const Positions& positions) {
   contacts.standAt(setup, positions);
   makeKnot(positions);
+}
+
+void Unfolder::Implementation::setUpCollar(double width) {
+  options.collarWidth = width;
+  setup = setUpPatch(std::move(setup.mesh), std::move(setup.region), viewpoints, options);
+  contacts = Contacts(setup, options);
+  standAt(state.positions);
+  contacts.forget();
 }
 
 void Unfolder::Implementation::makeKnot(const Positions& positions) {
@@ -45,6 +61,7 @@ TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.drive;
   strengths[Term::Area] = state.areaStiffness;
+  strengths[Term::Lift] *= state.lift;
   if (options.surround == Surround::None) strengths[Term::Lift] = 0;
   strengths[Term::Contact] *= setup.edge * setup.edge;
   return strengths;
@@ -88,10 +105,6 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
   }
   account.areaErrorMean = sum / static_cast<double>(setup.patch.regionFaces);
   account.areaErrorMax = largest;
-  if (account.areaErrorMean < options.areaSlack) {
-    account.seen =
-        visibility::seenShare({state.positions, setup.mesh.faces}, setup.region.faces, viewpoints);
-  }
   sum = 0;
   for (const PatchSpring& spring : setup.patch.regionEdges()) {
     sum += std::abs(lengthOf(spring, state.positions) / spring.restLength - 1);
@@ -122,13 +135,33 @@ bool Unfolder::step() {
   self_->asked.reset();
   return moved;
 }
-void Unfolder::steer(double drive, std::optional<Phase> phase) {
-  self_->asked = phase;
-  self_->state.drive = drive;
+void Unfolder::raiseDrive(double factor) {
+  self_->state.drive *= factor;
+  self_->state.driveIteration = self_->state.iteration;
 }
-double Unfolder::sunkShare() const {
-  if (self_->options.surround == Surround::None) return 0;
-  return unfolding::sunkShare(self_->setup.patch, self_->state.positions);
+void Unfolder::steer(Phase phase, double factor) {
+  self_->asked = phase;
+  self_->state.drive *= factor;
+}
+bool Unfolder::isHeldBelow() const {
+  return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&
+         sunkShare(self_->setup.patch, self_->state.positions) > kSunk;
+}
+void Unfolder::makeWay() {
+  UnfoldState& state = self_->state;
+  ++state.ways;
+  state.driveIteration = state.iteration;
+  state.lift *= kStronger;
+  state.collarWidth *= kWiden;
+  self_->setUpCollar(state.collarWidth);
+  self_->measure(self_->record);
+}
+double Unfolder::seenShare() const {
+  return visibility::seenShare(current(), self_->setup.region.faces, self_->viewpoints);
+}
+double Unfolder::look() {
+  self_->state.look = {self_->state.iteration, seenShare()};
+  return self_->state.look.seen;
 }
 const UnfoldState& Unfolder::state() const {
   return self_->state;
@@ -139,6 +172,9 @@ void Unfolder::restore(UnfoldState state) {
     throw InvalidInput("state: it belongs to another surface or region");
   }
   self_->state = std::move(state);
+  if (self_->state.collarWidth != self_->setup.collarWidth) {
+    self_->setUpCollar(self_->state.collarWidth);
+  }
   const Positions& positions = self_->state.positions;
   bool standing = true;  // unless another region of the surface was unfolded before
   for (Eigen::Index v = 0; v < positions.rows() && standing; ++v) {

@@ -32,6 +32,8 @@ struct Unfolder::Implementation {
   /// Fixed vertices stand at these positions from now on: as obstacles, and for the knot energy.
   void standAt(const Positions& positions);
   void makeKnot(const Positions& positions);
+  /// Sets up once more with another collar, the state as it is.
+  void setUpCollar(double width);
 
   /// Strengths of the terms in the present state.
   [[nodiscard]] TermValues strengths() const;

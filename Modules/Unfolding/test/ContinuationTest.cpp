@@ -37,10 +37,9 @@ TEST(Steering, GoalsThatCannotBothBeMetAreMissedInProportionOfTheTrade) {
     options.trade = trade;
     EXPECT_NEAR(aimAt(options, kGoalStrain), kGoalVisibility, 1e-12);
     EXPECT_NEAR(aimAt(options, kGoalStrain + 0.01), kGoalVisibility - 0.01 / trade, 1e-12);
-    IterationRecord both;
-    both.visibility = kGoalVisibility - 0.01 / trade;
-    both.edgeStrainMean = kGoalStrain + 0.01;
-    EXPECT_NEAR(merit(both, options), -0.01 / trade, 1e-12) << "both miss alike";
+    EXPECT_NEAR(merit(kGoalVisibility - 0.01 / trade, kGoalStrain + 0.01, kNaN, trade),
+                -0.01 / trade, 1e-12)
+        << "both miss alike";
   }
   EXPECT_LT(aimAt({}, kSpared), kGoalVisibility + 0.01) << "no more is seen than is asked for";
   UnfoldOptions target;

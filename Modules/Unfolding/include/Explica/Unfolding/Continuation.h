@@ -47,7 +47,7 @@ class Continuation {
   struct Outlook;
   [[nodiscard]] Outlook outlook(const Unfolder& unfolder,
                                 const std::vector<IterationRecord>& history) const;
-  [[nodiscard]] Termination endOf(const Outlook& now, const IterationRecord& last) const;
+  [[nodiscard]] Termination endOf(Unfolder& unfolder, const Outlook& now) const;
   void steer(Unfolder& unfolder, const Outlook& now) const;
 
   UnfoldOptions options_;

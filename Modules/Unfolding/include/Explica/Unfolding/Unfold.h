@@ -65,10 +65,13 @@ struct UnfoldFrame {
   Positions positions;  ///< V x 3
 };
 
-/// The best state that a run has seen among those that keep areas: see merit().
+/// The best state that a run has seen among those that keep areas: see isBetter().
 struct BestState {
   int iteration = 0;
-  Positions moving;  ///< of the vertices that move
+  double visibility = kNaN;
+  double strain = kNaN;  ///< mean edge strain
+  Positions moving;      ///< of the vertices that move
+  double seen = kNaN;    ///< share of the region's area that is seen; NaN if nobody looked
 };
 
 /// Of visibility, or of strain by what it is worth: what differs by less is the same.
@@ -79,12 +82,18 @@ inline constexpr double kAccuracy = 1e-3;
 /// positions lose nothing on the way there and back.
 [[nodiscard]] Point originNear(const Point& middle);
 
-/// The least of what a state has to spare of its goals: visibility, share seen, strain by what it
-/// is worth; on the way to a target, its visibility.
-[[nodiscard]] double merit(const IterationRecord& state, const UnfoldOptions& options);
+/// The lesser of what seeing and lengths have to spare, or what the share seen lacks if that is
+/// more.
+/// @param seen  NaN: nobody looked, and nothing is known to lack
+[[nodiscard]] double merit(double visibility, double strain, double seen = kNaN,
+                           double trade = kTrade);
 /// Whether a result has what an unfolding is to have: `goal` of visibility, no less seen than that
 /// or kGoalSeen, and edges strained by kGoalStrain at most.
 [[nodiscard]] bool meetsGoals(double goal, double visibility, double seen, double strain);
+/// More merit; on the way to a target, the higher visibility.
+/// @param seen  of the state
+[[nodiscard]] bool isBetter(const IterationRecord& state, const BestState& than,
+                            bool towardsTarget = false, double seen = kNaN, double trade = kTrade);
 /// How a driver of its own sets up an Unfolder that ends where unfold() does.
 [[nodiscard]] UnfolderOptions solverOptions(const UnfoldOptions& options);
 

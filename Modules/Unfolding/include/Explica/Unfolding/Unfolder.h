@@ -45,8 +45,7 @@ struct UnfolderOptions {
                                       ///< proportion to the region
   double contactRange = 0.25;         ///< of the mean edge length: the barrier acts below it, > 0
   double yieldStrain = 0.015;  ///< strain beyond which an edge costs less than its square, > 0
-  double areaSlack = 0;    ///< relative area error that needs no mending, within which rays tell
-                           ///< what is seen; unfold() sets it, >= 0
+  double areaSlack = 0;    ///< relative area error that needs no mending; unfold() sets it, >= 0
   int guideFaces = 30000;  ///< a region alone of so many faces is pulled towards its flat map, >= 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
   bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
@@ -113,8 +112,7 @@ struct IterationRecord {
   double visibility = kNaN;     ///< average flux density of the region, [-1, 1]
   double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
   double areaErrorMax = kNaN;
-  double edgeStrainMean = kNaN;  ///< mean |l / l0 - 1| over the region's edges
-  double seen = kNaN;  ///< share of the region's area that rays reach; NaN while areas are off
+  double edgeStrainMean = kNaN;     ///< mean |l / l0 - 1| over the region's edges
   double collarStretchMean = kNaN;  ///< A / A0 of faces that move outside the region; NaN if none
   double collarStretchMax = kNaN;
   TermValues energies;           ///< terms of the objective after the step, mm^2
@@ -131,6 +129,12 @@ struct IterationRecord {
   double seconds = 0;  ///< wall time since the run began, set by unfold()
 };
 
+/// What rays to the viewpoints told of a state.
+struct Look {
+  int iteration = -1;  ///< whose state it was; -1: there was no look
+  double seen = kNaN;  ///< share of the region's area that is seen then
+};
+
 /// Everything that the next step depends on, beyond the inputs of construction.
 struct UnfoldState {
   Positions positions;          ///< V x 3, all vertices of the surface
@@ -139,8 +143,13 @@ struct UnfoldState {
   double damping = 1;
   double areaStiffness = 0;  ///< current, >= weights.area
   double drive = 1;          ///< strength of the visibility term against the others
+  int driveIteration = 0;    ///< when it was raised last, or way was made
+  double lift = 1;           ///< factor of weights.lift, raised where way was made
+  double collarWidth = 0;    ///< mm along the surface; wider where way was made
+  int ways = 0;              ///< how often that was
   int iteration = 0;
   bool stalled = false;  ///< no step lowered the objective
+  Look look;             ///< the last
 };
 
 /// Unfolds a region one iteration at a time, so that a viewer or a script can watch and steer.
@@ -170,12 +179,24 @@ class Unfolder {
   /// stalled and unchanged).
   bool step();
 
-  /// Sets the strength of the visibility term, and says what the next step is for.  Without a phase
-  /// areas tighten once the visibility rises slowly.
-  void steer(double drive, std::optional<Phase> phase = std::nullopt);
-  /// Share of the region's area that lies below what stood around it, although it ought to be
-  /// above; 0 of a region alone.
-  [[nodiscard]] double sunkShare() const;
+  /// Says what the next step is for (Opening, Weighing or Settling), and strengthens or weakens the
+  /// visibility term a little.  Without it areas tighten once the visibility rises slowly.
+  void steer(Phase phase, double factor);
+  /// Strengthens the visibility term for good: what follows has to be waited for.
+  void raiseDrive(double factor);
+
+  /// Whether a part of the region that counts is held below its elastic surroundings, which can
+  /// still be asked to part further.
+  [[nodiscard]] bool isHeldBelow() const;
+  /// Parts the surroundings: from now on more of them moves (beginning where it stands, so that
+  /// nothing is lost), and the region is pulled up with more force.  More vertices move then.
+  void makeWay();
+
+  /// Share of the region's area that is seen from the viewpoints, by rays: about as expensive as a
+  /// quarter of a step.
+  [[nodiscard]] double seenShare() const;
+  /// The same, taken note of in the state.
+  double look();
 
   [[nodiscard]] const UnfoldState& state() const;
   /// Continues from a state of the same inputs: bit-identical to never having stopped.
