@@ -124,6 +124,12 @@ TEST(NearbyRegistration, BringsAnImageOfAnotherContrastOntoTheFirst) {
   for (float& value : b.data) value = 250 - 1.5F * value;
   EXPECT_LT(apart(registerNearby(a, b), moved), 0.05 * kSpacing);
   EXPECT_THROW((void)registerNearby(a, Volume<float>(grid(), 1.0F)), InvalidInput);
+  Volume<float> noise(grid());
+  std::mt19937 random(1);
+  for (float& value : noise.data) value = static_cast<float>(random() % 1000);
+  EXPECT_THROW((void)registerNearby(a, noise), InvalidInput);
+  b.grid.origin += Vector(300, 0, 0);
+  EXPECT_THROW((void)registerNearby(a, b), InvalidInput);
 }
 
 TEST(SessionAverage, OfThreeTurnsToNoneInTheMean) {

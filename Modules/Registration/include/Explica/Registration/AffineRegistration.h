@@ -39,7 +39,9 @@ struct AffineRegistration {
 /// step of 0.02 mm gains nothing.
 /// @param image   head or brain
 /// @param second  of the same head; may show more or less of it
-/// @throws InvalidInput  an image without contrast
+/// @throws InvalidInput  an image without contrast, less than half of the head in both, or nothing
+/// in
+///                       common, as of two heads
 [[nodiscard]] Eigen::Isometry3d registerNearby(const Volume<float>& image,
                                                const Volume<float>& second,
                                                const Monitor& monitor = {});
