@@ -94,9 +94,7 @@ SurfaceImages readImages(Context& context, const SurfaceSettings& s) {
   auto step = context.step("align");
   const Eigen::Isometry3d motion =
       registration::registerNearby(*images.first, *images.second, context.monitor());
-  Grid& moved = images.second->grid;
-  moved.origin = motion.inverse() * moved.origin;
-  moved.direction = motion.linear().transpose() * moved.direction;
+  images.second->grid = registration::broughtBack(images.second->grid, motion);
   const Grid& grid = images.first->grid;
   images.secondMoved = 0;
   for (int c = 0; c < 8; ++c) {

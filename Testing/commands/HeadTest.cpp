@@ -57,12 +57,12 @@ TEST_P(CortexWithDura, IsAsThickAsItIs) {
   Volume<float> t2 = io::readScalars(folder / "phantom/t1.nii.gz").volume;
   for (float& value : t2.data) value = 200 - value;
   const Vector off(2, -1, 1.5);
-  t2.grid.origin += off;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.2, Vector(1, 2, 3).normalized()).matrix();
+  t2.grid.direction = turn * t2.grid.direction;
+  t2.grid.origin = turn * t2.grid.origin + off;
   io::writeVolume(folder / "t2.nii.gz", t2);
   images.insert(images.end(), {"--t2", folder / "t2.nii.gz"});
   EXPECT_NEAR(thickness(images), 2.5, 0.08);
-  EXPECT_NEAR(readJson(folder.path() / "surface/summary.json")["t2_moved"].get<double>(),
-              off.norm(), 0.8);  // a ball says little of turns
 }
 
 /// What a scanner with turned axes and voxels of that size sees: means over what of the head is in

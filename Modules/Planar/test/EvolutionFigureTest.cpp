@@ -41,6 +41,17 @@ TEST(EvolutionFigure, RingsEveryCrossing) {
   EXPECT_EQ(countOf(svg, "r=\"7\""), 2U) << "one in the panel, one in the legend";
 }
 
+TEST(EvolutionFigure, OfManyVerticesDrawsWhatAPageTellsApart) {
+  const Curve round = makeCircle(200000, 10);
+  EvolutionStage whole = stageOf(round);
+  whole.region = {0, round.edgeCount()};
+  EXPECT_LT(drawEvolution(true, Point2(0, 100), {whole}).size(), 2000000U);
+  const Curve square = makeCircle(4, 10);
+  whole = {"start", square.positions, {0, 4}, 0.5, 0.1, 3};
+  EXPECT_EQ(countOf(drawEvolution(true, Point2(0, 100), {whole}), "stroke-linecap"), 4U)
+      << "the closing edge, too";
+}
+
 TEST(EvolutionFigure, ALineOfViewpointsHasTwoArrows) {
   const Curve square = makeCircle(4, 10);
   const Viewpoints line({Point2(-50, 100), Point2(0, 110), Point2(50, 100)}, {0.3, 0.4, 0.3});

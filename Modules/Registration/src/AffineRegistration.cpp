@@ -294,7 +294,8 @@ void requireSeen(const Volume<float>& head, const Grid& grid) {
   const double share =
       static_cast<double>(seen) / static_cast<double>(std::max<std::size_t>(all, 1));
   if (share >= kLeast) return;
-  throw InvalidInput("t2: by the headers it shows " + std::to_string(std::lround(100 * share)) +
+  throw InvalidInput("second image: by the headers it shows " +
+                     std::to_string(std::lround(100 * share)) +
                      " % of the head in the image; half is needed to bring it there");
 }
 
@@ -389,6 +390,12 @@ Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>
   motion.linear() = map.linear();
   motion.translation() = map.translation();
   return motion;
+}
+
+Grid broughtBack(Grid grid, const Eigen::Isometry3d& motion) {
+  grid.origin = motion.inverse() * grid.origin;
+  grid.direction = motion.linear().transpose() * grid.direction;
+  return grid;
 }
 
 }  // namespace explica::registration

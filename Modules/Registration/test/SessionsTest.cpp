@@ -123,6 +123,23 @@ TEST(NearbyRegistration, BringsAnImageOfAnotherContrastOntoTheFirst) {
   Volume<float> b = session(moved, 1, 20, 2);  // with the jaw open
   for (float& value : b.data) value = 250 - 1.5F * value;
   EXPECT_LT(apart(registerNearby(a, b), moved), 0.05 * kSpacing);
+  // On long voxels of turned axes, too; brought back, what is seen lies where the first shows it.
+  Grid turned = grid();
+  turned.spacing = Vector(4, 4, 6);
+  turned.size[2] = 38;
+  turned.direction = placed(20, {1, 1, 0}, Vector::Zero()).linear();
+  turned.origin = turned.direction * Point(-110, -110, -111);
+  Volume<float> oblong(turned);
+  for (std::size_t v = 0; v < oblong.size(); ++v) {
+    const auto [i, j, k] = turned.subscripts(v);
+    const Point at = moved.inverse() * turned.toWorld(Vector(i, j, k));
+    oblong[v] = static_cast<float>(250 - 1.5 * headAt(at, 20));
+  }
+  const Motion found = registerNearby(a, oblong);
+  EXPECT_LT(apart(found, moved), 0.05 * kSpacing);
+  const Vector index(20, 31, 17);
+  const Point seen = turned.toWorld(index);
+  EXPECT_LT((broughtBack(turned, found).toWorld(index) - moved.inverse() * seen).norm(), 0.5);
   EXPECT_THROW((void)registerNearby(a, Volume<float>(grid(), 1.0F)), InvalidInput);
   Volume<float> noise(grid());
   std::mt19937 random(1);

@@ -468,7 +468,8 @@ TEST(CorticalSurface, AWhiteBorderIsFoundAcrossACortexOfEvenBrightness) {
 
 TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
   // Upwards, dura as bright as grey matter lies on the cortex without fluid between, and the labels
-  // took half a millimetre of it for cortex.  In the second image it is dark, and fluid is bright.
+  // took half a millimetre of it for cortex.  In the second image it is dark, and fluid is bright,
+  // or dark, too.
   const Grid grid = lattice(56, Vector::Constant(0.8));
   const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
   const auto seen = [&](double white, double grey, double dura, double fluid) {
@@ -482,7 +483,8 @@ TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
       volumeOf(grid, [](const Point& p) { return shareOf(p, 14, 4); }),
       volumeOf(grid, [](const Point& p) { return shareOf(p, p.z() > 8 ? 17.5 : 17, 4); }));
   tissue.byBrightness = false;
-  const Volume<float> t1 = seen(110, 75, 75, 25), t2 = seen(75, 105, 10, 200);
+  const Volume<float> t1 = seen(110, 75, 75, 25);
+  const Volume<float> t2 = seen(75, 105, 10, 200), flair = seen(85, 105, 10, 15);
   SurfaceOptions options;
   options.faces = 6000;
   const auto beyond = [&](const BorderImages& images) {  // mean, mm, below the dura
@@ -500,6 +502,7 @@ TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
   const double alone = beyond(t1);
   EXPECT_GT(alone, 0.4);
   EXPECT_LT(beyond({t1, &t2}), 0.6 * alone);  // the labels keep a say
+  EXPECT_LT(beyond({t1, &flair}), 0.6 * alone);
 }
 
 TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {

@@ -46,4 +46,8 @@ struct AffineRegistration {
                                                const Volume<float>& second,
                                                const Monitor& monitor = {});
 
+/// Where the grid of a second image lies in the frame of the first.
+/// @param motion  as registerNearby(): from the first's points to the second's
+[[nodiscard]] Grid broughtBack(Grid grid, const Eigen::Isometry3d& motion);
+
 }  // namespace explica::registration
