@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every command has from Applications/Common, tried on the quickest of them.
 
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Testing/KillMoments.h"
+#include "Limits.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +16,23 @@
 
 namespace explica::testing {
 namespace {
+
+TEST(TimeLimit, TimeKeptForWhatFollowsEndsTheWorkEarlierAndForGood) {
+  using app::timeIsOver;
+  EXPECT_FALSE(timeIsOver());
+  app::TimeLimit limit(1e6);
+  EXPECT_FALSE(timeIsOver());
+  EXPECT_EQ(app::causeOf(Termination::Interrupted), Termination::Interrupted);
+  {
+    const app::TimeKept half(5e5);
+    EXPECT_FALSE(timeIsOver());
+    const app::TimeKept rest(6e5);
+    EXPECT_TRUE(timeIsOver());
+  }
+  EXPECT_TRUE(timeIsOver()) << "what was asked to end is not asked to go on";
+  EXPECT_EQ(app::causeOf(Termination::Interrupted), Termination::MaxTime);
+  EXPECT_EQ(app::causeOf(Termination::Converged), Termination::Converged);
+}
 
 namespace fs = std::filesystem;
 using ::testing::Test;
