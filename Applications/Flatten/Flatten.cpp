@@ -5,6 +5,7 @@
 
 #include "AutomaticCuts.h"
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Describing.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Application/TimeKept.h"
 #include "Explica/Core/StopScope.h"
@@ -63,7 +64,7 @@ A closed surface needs --center or --vertex with --radius, or --label (a patch),
 
 --cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of five such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
 
-The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time, writes the map as far as it came, whole and one-to-one as ever, with the cuts found until then, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
+The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time, writes the cuts found until then or the map as far as it came, whole and one-to-one as ever, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
 
 With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it (--to-volume where they were measured elsewhere), and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
@@ -190,33 +191,36 @@ struct Made {
   flattening::FlatMap map;
   flattening::Checkpoint state;
   double secondsCut = 0;
+
+  /// Whether it was stopped while cuts were sought: then there is no map.
+  [[nodiscard]] bool searching() const {
+    return state.cuts && state.cuts->termination == Termination::Interrupted;
+  }
 };
 
 Made make(Context& context, const FlattenSettings& s, const Subject& subject, flattening::Disc disc,
-          flattening::FlattenOptions options) {
+          const flattening::FlattenOptions& options) {
   const auto begin = Clock::now();
   std::optional<flattening::Checkpoint> from;
   if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kStateFile);
   Made made;
   made.state.uncut = flattening::sumOver(disc);
-  bool cutting = false;
   if (s.cuts == kAutomatic) {
     auto step = context.step("cut");
     Opened opened = openedByItself(context, context.monitor(), subject.reference, disc, s.cut,
                                    from ? &*from : nullptr);
-    cutting = opened.plan.termination == Termination::Interrupted;
     made.state.cuts = std::move(opened.plan);
+    if (made.searching()) return made;
     disc = std::move(opened.disc);
   }
   const StopScope kept(nullptr);  // the map is whole at any moment
   made.secondsCut = secondsSince(begin);
-  if (cutting) options.frames = 0;  // the map stands at its very start
   auto step = context.step("flatten");
   made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
   made.map.termination = causeOf(made.map.termination);
   step.iterations(made.map.iterations);
   step.termination(made.map.termination);
-  if (!cutting) made.state.map = std::move(made.map.state);
+  made.state.map = std::move(made.map.state);
   made.disc = std::move(disc);
   return made;
 }
@@ -233,12 +237,13 @@ Termination run(Context& context, const FlattenSettings& s) {
   const TimeKept rest(read * (kRest + kEachFrame * options.frames));
   const Made made = make(context, s, subject, std::move(whole), options);
   const StopScope kept(nullptr);  // what is reached is written
+  flattening::writeCheckpoint(context.output(kStateFile), made.state);
+  if (made.searching()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
   const double flattened = secondsSince(begin);
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
-  flattening::writeCheckpoint(context.output(kStateFile), made.state);
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
   writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map.positions));
   unfolding::FlatSummary summary;
@@ -249,8 +254,10 @@ Termination run(Context& context, const FlattenSettings& s) {
   summary.turnedOverInFrames = writeFrames(context, subject, disc, map.frames);
   Termination termination = map.termination;
   const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary, termination);
-  writePatchTable(context, s, subject, disc, map, areaRatio);
-  writeGrid(context, s, surfaces, disc, flat);
+  describing(context, termination, [&] {
+    writePatchTable(context, s, subject, disc, map, areaRatio);
+    writeGrid(context, s, surfaces, disc, flat);
+  });
   context.results(summary);
   sayHowGood(context, map, summary.distortion);
   context.result("seconds_start", read);

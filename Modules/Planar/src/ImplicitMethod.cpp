@@ -222,7 +222,11 @@ class ImplicitMethod final : public UnfoldingMethod {
     }
     matrix_.resize(unknowns_ + constraints_, unknowns_ + constraints_);
     matrix_.setFromTriplets(entries_.begin(), entries_.end());
-    solver_.compute(matrix_);
+    checkpoint();
+    solver_.analyzePattern(matrix_);
+    checkpoint();
+    solver_.factorize(matrix_);
+    checkpoint();
   }
 
   /// Newton steps back to the kept lengths in the metric of the last factorisation.
