@@ -28,7 +28,7 @@ SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared"
 # Noise in per cent of white matter, field, contrast of grey and white, voxels in mm.
 VARIANTS = {1: (3, 0.2, 1.0, (1, 1, 1)), 2: (6, 0.4, 0.85, (1, 1, 1)), 3: (2, 0.3, 1.15, (0.7, 0.7, 0.7)),
             4: (4, 0.2, 1.0, (1.3, 1.3, 1.3)), 5: (3, 0.3, 1.0, (1, 1, 2))}
-COLUMNS = ["person", "half", "variant", "exit", "flags", "seconds", "mask_dice", "cortex_outside_mask", "missing_ml", "extra_ml",
+COLUMNS = ["person", "half", "variant", "exit", "flags", "seconds", "mask_dice", "cortex_outside_mask", "cortex_as_fluid", "missing_ml", "extra_ml",
            "grey_dice", "white_dice", "agreement", "open_share"]
 OF_A_SIDE = ["thickness", "truth", "region_r", "region_slope", "region_largest", "white_border", "pial_border", "cortex_between",
              "cortex_beyond_pial", "middle_inside", "defects", "doubtful", "doubt_rank"]
@@ -77,6 +77,7 @@ def compare(labels, folder, row):
     voxel = np.prod(nib.load(folder / "seg.nii.gz").header.get_zooms()[:3]) / 1000
     row["mask_dice"] = dice(mask, brain)
     row["cortex_outside_mask"] = (cortex & ~mask).sum() / cortex.sum()
+    row["cortex_as_fluid"] = (tissue[cortex] <= 1).mean()
     row["missing_ml"], row["extra_ml"] = (brain & ~mask).sum() * voxel, (mask & ~brain).sum() * voxel
     # Deep grey matter is neither to a classifier of brightness: only labels of cortex and white matter and what is called so there.
     known = np.isin(labels, (2, 41, 3, 42)) | (labels == 24) | (labels >= 500)
