@@ -54,7 +54,9 @@ std::string meantBy(const std::string& word, const std::vector<std::string>& can
 
 std::string nearestWord(const std::string& word, const std::vector<std::string>& candidates) {
   const std::string meant = meantBy(word, candidates);
-  return meant.empty() ? nearestOf(word, candidates, word.size() / 3 + 2) : meant;
+  if (!meant.empty()) return meant;
+  const std::size_t letters = word.size() - std::min(word.find_first_not_of('-'), word.size());
+  return nearestOf(word, candidates, letters / 3 + 1);  // two letters in three stay
 }
 
 }  // namespace explica::app
