@@ -28,7 +28,6 @@ struct QuickRun {
   std::vector<std::string> words;
   /// Writes inputs that no command makes.
   std::function<void(const TemporaryFolder&)> prepare = {};
-  int stops = 10;  ///< checks at which it is asked to end: fewer where a run takes seconds
 };
 
 /// A folded sphere of 30 mm, 1280 faces.
@@ -211,8 +210,7 @@ inline const std::vector<QuickRun>& quickRuns() {
        {{"phantom", "ventricle", "--size", "64", "--spacing", "2", "--slice", "8", "--frames", "2",
          "--out", "{folder}/beat"}},
        {"heart", "{folder}/beat/frame-0000.nii.gz", "{folder}/beat/frame-0001.nii.gz"},
-       {},
-       4},
+       {}},
       {"Unfold",
        {},
        {"unfold", "{folder}/sphere.surf.gii", "--center", "0,0,30", "--radius", "12", "--direction",
@@ -223,8 +221,7 @@ inline const std::vector<QuickRun>& quickRuns() {
        {},
        {"flatten", "{folder}/sphere.surf.gii", "--cuts", "auto", "--cut.strain", "0.2", "--grid",
         "2"},
-       writeFoldedSphere,
-       4},
+       writeFoldedSphere},
       {"Compare",
        {},
        {"compare", "{folder}/sphere.surf.gii", "{folder}/sphere.surf.gii", "--pairs", "400",
@@ -251,8 +248,7 @@ inline const std::vector<QuickRun>& quickRuns() {
        {"longitudinal", "{folder}/1/t1.nii.gz", "{folder}/2/t1.nii.gz", "--atlas",
         "{folder}/sides.nii.gz", "--hemisphere", "L", "--template", "none", "--surface.faces",
         "1000"},
-       writeSides,
-       3},
+       writeSides},
       {"Register",
        {},
        {"register", "{folder}/lh.sphere", "--to", "{folder}/lh.sphere", "--level", "3"},

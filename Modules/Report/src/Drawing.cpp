@@ -165,41 +165,62 @@ std::pair<int, int> extentOf(const char* strokes) {
   return {low, high};
 }
 
+/// Pixels of a picture, ends included; none where `right` is below `left` or `bottom` below `top`.
+struct PixelBox {
+  int left, right, top, bottom;
+
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y - top) * (right - left + 1) + (x - left);
+  }
+  [[nodiscard]] std::size_t size() const {
+    return right < left || bottom < top ? 0 : index(right, bottom) + 1;
+  }
+};
+
+PixelBox pixelsOf(const Eigen::AlignedBox2d& box, double margin, const Picture& picture) {
+  const auto low = [&](double x) { return std::max(0, static_cast<int>(std::floor(x - margin))); };
+  const auto high = [&](double x, int count) {
+    return std::min(count - 1, static_cast<int>(std::ceil(x + margin)));
+  };
+  return {low(box.min().x()), high(box.max().x(), picture.width), low(box.min().y()),
+          high(box.max().y(), picture.height)};
+}
+
 }  // namespace
 
 void drawSegments(Picture& picture, const std::vector<Segment2>& segments, const Colour& colour,
                   double width) {
-  // Coverage of the whole drawing first, so that joints and crossings do not darken twice.
-  std::vector<std::uint8_t> coverage(static_cast<std::size_t>(picture.width) * picture.height, 0);
   const double half = 0.5 * width;
+  Eigen::AlignedBox2d all;
+  for (const Segment2& s : segments) all.extend(s.from).extend(s.to);
+  if (all.isEmpty()) return;
+  const PixelBox box = pixelsOf(all, half + 1, picture);
+  // Coverage of the whole drawing first, so that joints and crossings do not darken twice.
+  std::vector<std::uint8_t> coverage(box.size(), 0);
   for (const Segment2& s : segments) {
-    const int x0 =
-        std::max(0, static_cast<int>(std::floor(std::min(s.from.x(), s.to.x()) - half - 1)));
-    const int x1 = std::min(picture.width - 1,
-                            static_cast<int>(std::ceil(std::max(s.from.x(), s.to.x()) + half + 1)));
-    const int y0 =
-        std::max(0, static_cast<int>(std::floor(std::min(s.from.y(), s.to.y()) - half - 1)));
-    const int y1 = std::min(picture.height - 1,
-                            static_cast<int>(std::ceil(std::max(s.from.y(), s.to.y()) + half + 1)));
+    const PixelBox part = pixelsOf(Eigen::AlignedBox2d(s.from).extend(s.to), half + 1, picture);
     const Eigen::Vector2d along = s.to - s.from;
     const double squared = along.squaredNorm();
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
+    for (int y = part.top; y <= part.bottom; ++y) {
+      for (int x = part.left; x <= part.right; ++x) {
         const Eigen::Vector2d p = Eigen::Vector2d(x + 0.5, y + 0.5) - s.from;
         const double t = squared > 0 ? std::clamp(p.dot(along) / squared, 0.0, 1.0) : 0.0;
         const double inside = half + 0.5 - (p - t * along).norm();
         if (inside <= 0) continue;
-        std::uint8_t& c = coverage[static_cast<std::size_t>(y) * picture.width + x];
+        std::uint8_t& c = coverage[box.index(x, y)];
         c = std::max(c, static_cast<std::uint8_t>(std::lround(255 * std::min(inside, 1.0))));
       }
     }
   }
-  for (std::size_t p = 0; p < coverage.size(); ++p) {
-    if (coverage[p] == 0) continue;
-    const float share = coverage[p] / 255.0f;
-    for (int c = 0; c < 3; ++c) {
-      std::uint8_t& byte = picture.rgb[3 * p + c];
-      byte = encodeSrgb((1 - share) * decodeSrgb(byte) + share * colour[c]);
+  for (int y = box.top; y <= box.bottom; ++y) {
+    for (int x = box.left; x <= box.right; ++x) {
+      const std::uint8_t covered = coverage[box.index(x, y)];
+      if (covered == 0) continue;
+      const float share = covered / 255.0f;
+      for (int c = 0; c < 3; ++c) {
+        std::uint8_t& byte = picture.rgb[3 * (static_cast<std::size_t>(y) * picture.width + x) + c];
+        byte = encodeSrgb((1 - share) * decodeSrgb(byte) + share * colour[c]);
+      }
     }
   }
 }

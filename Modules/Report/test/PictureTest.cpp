@@ -221,6 +221,19 @@ TEST(Drawing, LineCoversItsWidth) {
   EXPECT_EQ(p.pixel(20, 5)[0], 255);
 }
 
+TEST(Drawing, WhatLiesBesideThePictureLeavesItAndWhatLeavesItIsCut) {
+  Picture p(40, 30);
+  const Picture white = p;
+  drawSegments(p, {}, {0, 0, 0}, 4);
+  drawSegments(p, {{{-30, -30}, {-9, 200}}, {{60, 5}, {90, 5}}}, {0, 0, 0}, 4);
+  EXPECT_EQ(p.rgb, white.rgb);
+  drawSegments(p, {{{-50, 10}, {200, 10}}, {{20, -9}, {20, 99}}}, {0, 0, 0}, 4);
+  for (const auto& [x, y] : {std::pair{0, 10}, {39, 10}, {20, 0}, {20, 29}}) {
+    EXPECT_EQ(p.pixel(x, y)[0], 0) << x << " " << y;
+  }
+  EXPECT_EQ(p.pixel(5, 5)[0], 255);
+}
+
 TEST(Drawing, TextHasInkWhereItSaysItHasWidth) {
   Picture p(300, 40);
   drawText(p, "thickness [mm\u00b2] -0.25", {10, 30}, 14, {0, 0, 0});
