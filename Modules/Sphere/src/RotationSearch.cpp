@@ -14,7 +14,7 @@ namespace explica::sphere {
 namespace {
 
 constexpr int kRotations = 4000;              // some 14 degrees apart
-constexpr std::size_t kFollowed = 12;         // of them, best first
+constexpr std::size_t kFollowed = 30;         // of them, best first, no two of them near
 constexpr double kFirstStep = 8 * kPi / 180;  // half of what is between neighbours
 constexpr double kLastStep =
     0.02 * kPi / 180;  // radians: a fifth of what a sphere may move onto itself
@@ -75,6 +75,19 @@ Candidate descended(const FoldingLevel& moving, const FoldingLevel& target, Cand
   return at;
 }
 
+/// The best candidates of which none is within twice the first step of a better one.
+std::vector<Candidate> apart(const std::vector<Candidate>& sorted) {
+  std::vector<Candidate> kept;
+  for (const Candidate& one : sorted) {
+    const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
+      return better.rotation.angularDistance(one.rotation) < 2 * kFirstStep;
+    });
+    if (!near) kept.push_back(one);
+    if (kept.size() == kFollowed) break;
+  }
+  return kept;
+}
+
 void sortByCost(std::vector<Candidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
@@ -82,25 +95,26 @@ void sortByCost(std::vector<Candidate>& candidates) {
 
 }  // namespace
 
-Eigen::Matrix3d searchRotation(const std::vector<FoldingLevel>& moving,
-                               const std::vector<FoldingLevel>& target, const Monitor& monitor) {
+std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& moving,
+                                             const std::vector<FoldingLevel>& target,
+                                             const Monitor& monitor) {
   monitor.progress(0, "rotation");
-  std::vector<Candidate> candidates(kRotations + 1);
+  std::vector<Candidate> candidates(kRotations);
   parallelFor(candidates.size(), 16, [&](std::size_t n) {
-    candidates[n].rotation = n == 0 ? Eigen::Quaterniond::Identity()  // often near already
-                                    : spiralRotation(static_cast<int>(n) - 1);
+    candidates[n].rotation = spiralRotation(static_cast<int>(n));
     candidates[n].cost = costOf(moving[kCoarse], target[kCoarse], candidates[n].rotation);
   });
   sortByCost(candidates);
-  candidates.resize(kFollowed);
-  parallelFor(candidates.size(), 1, [&](std::size_t n) {
-    candidates[n] =
-        descended(moving[kMiddle], target[kMiddle], candidates[n], kFirstStep, kFirstStep / 8);
-  });
-  sortByCost(candidates);
+  candidates = apart(candidates);
   const std::size_t fine = std::min<std::size_t>(kFine, target.size() - 1);
-  return descended(moving[fine], target[fine], candidates.front(), kFirstStep / 8, kLastStep)
-      .rotation.toRotationMatrix();
+  Candidate best = candidates.front();
+  best = descended(moving[kMiddle], target[kMiddle], best, kFirstStep, kFirstStep / 8);
+  best = descended(moving[fine], target[fine], best, kFirstStep / 8, kLastStep);
+  candidates.insert(candidates.begin(), best);
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Candidate& one : candidates) rotations.push_back(one.rotation.toRotationMatrix());
+  rotations.emplace_back(Eigen::Matrix3d::Identity());
+  return rotations;
 }
 
 }  // namespace explica::sphere
