@@ -5,10 +5,11 @@
 
 #include "AutomaticCuts.h"
 #include "Explica/Application/Command.h"
+#include "Explica/Application/Describing.h"
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Flattening/State.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "PatchOutputs.h"
@@ -67,7 +68,7 @@ A closed surface needs --center or --vertex with --radius, or --label (a patch),
 
 --cuts template lays the medial wall and the cuts of --template on the surface through its sphere in register (explica register), so that the maps of all people show the same cuts. They are those of lh.cuts.label.gii in the template's folder, a label file of its vertices (1 the wall, 2 and on the cuts, each from the wall or an earlier cut inwards) such as --cuts auto writes; else they are found on its white surface, and named by the region in which they end.
 
-The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time at any moment, writes the map as far as it came, whole and one-to-one as ever, with the cuts found until then, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
+The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time, writes the cuts found until then or the map as far as it came, whole and one-to-one as ever, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
 
 With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it (--to-volume where they were measured elsewhere), and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
       .reference("Tutte 1963, Proceedings of the London Mathematical Society 13:743-767")
@@ -117,15 +118,12 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
               s.areaTolerance)
       .options("Flattening", s.flatten, "solver.")
       .without("solver.area-tolerance")
-      .without("solver.max-time")
       .without("solver.frames")
       .option("Flattening",
               Field{"frames", "",
                     "states to write on the way, evenly spaced along the way that vertices go", 0,
                     kMostFrames},
               s.flatten.frames)
-      .option("Flattening", Field{"max-time", "s", "stop after this time", kAboveZero},
-              s.flatten.maxTime)
       .option("Flattening", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)
@@ -200,9 +198,8 @@ void sayHowGood(Context& context, const flattening::FlatMap& map,
                            : ""));
 }
 
-// What comes after cuts and map measures and writes for about four times as long as the start took,
-// and each frame for half as long.
-constexpr KeptTime kKept = {4, 0.5};
+// What comes after cuts and map, in times of the start, which reads one surface.
+constexpr double kRest = 3, kEachFrame = 0.5;
 
 /// The run from the opened surface on: its disc, its map, and what going on needs.
 struct Made {
@@ -210,27 +207,26 @@ struct Made {
   flattening::FlatMap map;
   flattening::Checkpoint state;
   double secondsCut = 0;
+
+  /// Whether it was stopped while cuts were sought: then there is no map.
+  [[nodiscard]] bool searching() const {
+    return state.cuts && state.cuts->termination == Termination::Interrupted;
+  }
 };
 
 Made make(Context& context, const FlattenSettings& s, const Subject& subject, flattening::Disc disc,
-          flattening::FlattenOptions options) {
+          const flattening::FlattenOptions& options) {
   const auto begin = Clock::now();
   std::optional<flattening::Checkpoint> from;
   if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kStateFile);
   Made made;
   made.state.uncut = flattening::sumOver(disc);
-  bool cutting = false;
   if (s.cuts == kAutomatic) {
     auto step = context.step("cut");
-    Monitor limited = context.monitor();
-    limited.stopWanted = [&] {
-      return context.monitor().shouldStop() ||
-             (options.maxTime && secondsSince(begin) > *options.maxTime);
-    };
-    Opened opened =
-        openedByItself(context, limited, subject.reference, disc, s.cut, from ? &*from : nullptr);
-    cutting = opened.plan.termination == Termination::Interrupted;
+    Opened opened = openedByItself(context, context.monitor(), subject.reference, disc, s.cut,
+                                   from ? &*from : nullptr);
     made.state.cuts = std::move(opened.plan);
+    if (made.searching()) return made;
     disc = std::move(opened.disc);
   }
   if (subject.cuts) {
@@ -239,14 +235,12 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
   }
   const StopScope kept(nullptr);  // the map is whole at any moment
   made.secondsCut = secondsSince(begin);
-  constexpr double kAtOnce = 1e-9;  // s
-  if (options.maxTime) options.maxTime = std::max(kAtOnce, *options.maxTime - made.secondsCut);
-  if (cutting) options.frames = 0;  // the map stands at its very start
   auto step = context.step("flatten");
   made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
+  made.map.termination = causeOf(made.map.termination);
   step.iterations(made.map.iterations);
   step.termination(made.map.termination);
-  if (!cutting) made.state.map = std::move(made.map.state);
+  made.state.map = std::move(made.map.state);
   made.disc = std::move(disc);
   return made;
 }
@@ -260,17 +254,16 @@ Termination run(Context& context, const FlattenSettings& s) {
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
-  if (options.maxTime) {
-    options.maxTime = timeToIterate(*options.maxTime, read, options.frames, kKept);
-  }
+  const TimeKept rest(read * (kRest + kEachFrame * options.frames));
   const Made made = make(context, s, subject, std::move(whole), options);
   const StopScope kept(nullptr);  // what is reached is written
+  flattening::writeCheckpoint(context.output(kStateFile), made.state);
+  if (made.searching()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
   const double flattened = secondsSince(begin);
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
-  flattening::writeCheckpoint(context.output(kStateFile), made.state);
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
   writeSurfaces(context, subject, disc, map, wholeMap(subject.reference.mesh, disc, map.positions));
   unfolding::FlatSummary summary;
@@ -281,8 +274,10 @@ Termination run(Context& context, const FlattenSettings& s) {
   summary.turnedOverInFrames = writeFrames(context, subject, disc, map.frames);
   Termination termination = map.termination;
   const Eigen::VectorXd areaRatio = measure(context, subject, disc, flat, summary, termination);
-  writePatchTable(context, s, subject, disc, map, areaRatio);
-  writeGrid(context, s, surfaces, disc, flat);
+  describing(context, termination, [&] {
+    writePatchTable(context, s, subject, disc, map, areaRatio);
+    writeGrid(context, s, surfaces, disc, flat);
+  });
   context.results(summary);
   sayHowGood(context, map, summary.distortion);
   context.result("seconds_start", read);

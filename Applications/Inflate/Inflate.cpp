@@ -7,11 +7,11 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -108,9 +108,8 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   return repair.after;
 }
 
-// What comes after the iterations has taken up to three times as long as the start; frames, which
-// are whole surfaces, half of it each.
-constexpr KeptTime kKept = {3, 0.5};
+// What comes after the iterations, in times of the start, which reads and tests one surface.
+constexpr double kRest = 2, kEachFrame = 0.5;
 
 Termination run(Context& context, const Settings& s) {
   const Stopwatch seconds;
@@ -123,12 +122,10 @@ Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("inflate");
-    inflation::InflateOptions options = s.inflate;
-    if (options.maxTime) {
-      options.maxTime = timeToIterate(*options.maxTime, started, options.frames, kKept);
-    }
-    u.result = inflation::inflate(u.before, options, context.monitor(),
+    const TimeKept rest(started * (kRest + kEachFrame * s.inflate.frames));
+    u.result = inflation::inflate(u.before, s.inflate, context.monitor(),
                                   checkpoint ? &*checkpoint : nullptr);
+    u.result.termination = causeOf(u.result.termination);
     step.iterations(u.result.history.back().step.iteration);
     step.termination(u.result.termination);
   }

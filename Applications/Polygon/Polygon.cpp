@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadPolygon.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
@@ -209,9 +210,11 @@ Termination run(Context& context, const PolygonSettings& s) {
 
   sayHowLongUnfoldingIs(context, s, task);
   auto step = context.step("unfold");
-  const StopScope kept(nullptr);  // what is reached is written
-  const planar::PolygonUnfolding result = planar::unfoldPolygon(
+  planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
+  if (result.history.back().iteration == 0) checkpoint(context.monitor());
+  const StopScope kept(nullptr);  // what is reached is written
+  result.termination = causeOf(result.termination);
   step.iterations(result.history.back().iteration);
   step.termination(result.termination);
   writeUnfolding(context, s, result, *view);

@@ -35,7 +35,8 @@ void refuseOtherImages(Judge& judge, const Volume<float>& image) {
 }
 
 /// What a segmentation of a T1 cannot be.
-void judgeTissue(Judge& judge, const segmentation::TissueSegmentation& tissue, double brainShare,
+void judgeTissue(Judge& judge, const Volume<float>& image,
+                 const segmentation::TissueSegmentation& tissue, double brainShare,
                  segmentation::TissueSummary& summary) {
   summary.rimContrast = segmentation::rimContrast(tissue.labels);
   judge.require("contrast", *summary.rimContrast);
@@ -45,6 +46,7 @@ void judgeTissue(Judge& judge, const segmentation::TissueSegmentation& tissue, d
   judge.flag("brain-volume", volume / std::min(1.0, brainShare));
   judge.flag("grey-share", tissue.classes[1].share);
   judge.flag("white-share", tissue.classes[2].share);
+  judge.flag("bright-in-brain", segmentation::brighterThanWhite(image, tissue));
 }
 
 /// Where template and image show different tissues, the image is believed, and the reader told.
@@ -156,10 +158,10 @@ Termination run(Context& context, const SegmentSettings& s) {
     if (head.expected.size() != 0) head.expected = boxes.back().of(head.expected);
   }
   const segmentation::TissueSegmentation tissue = findTissue(context, s, image, head.mask);
-  image = {};
   segmentation::TissueSummary summary;
   summary.tissue = &tissue;
-  judgeTissue(judge, tissue, head.brainShare, summary);
+  judgeTissue(judge, image, tissue, head.brainShare, summary);
+  image = {};
   compareWithTemplate(context, tissue, head, summary);
   writeTissue(context, boxes, tissue);
   if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas, summary);

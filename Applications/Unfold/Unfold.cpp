@@ -7,12 +7,12 @@
 #include "Settings.h"
 
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -203,6 +203,9 @@ void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
               pairs, std::ceil(pairs / kPairsPerSecond)));
 }
 
+// What comes after the iterations, in times of the start: it tests, measures and writes, too.
+constexpr double kRest = 2, kEachFrame = 0.2;
+
 Termination run(Context& context, const UnfoldSettings& s) {
   keepFreedMemory();
   const Stopwatch seconds;
@@ -226,12 +229,10 @@ Termination run(Context& context, const UnfoldSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
-    unfolding::UnfoldOptions options = s.unfold;
-    if (options.maxTime) {
-      options.maxTime = timeToIterate(*options.maxTime, u.secondsStart, options.frames);
-    }
-    u.result = unfolding::unfold(u.before, u.chosen, u.view, options, context.monitor(),
+    const TimeKept rest(u.secondsStart * (kRest + kEachFrame * s.unfold.frames));
+    u.result = unfolding::unfold(u.before, u.chosen, u.view, s.unfold, context.monitor(),
                                  checkpoint ? &*checkpoint : nullptr);
+    u.result.termination = causeOf(u.result.termination);
     step.iterations(u.result.history.back().iteration);
     step.termination(u.result.termination);
   }

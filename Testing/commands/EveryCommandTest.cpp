@@ -53,6 +53,11 @@ void expectTruth(const CommandResult& made, const std::string& out, const QuickR
   const std::string end = summary["termination"];
   EXPECT_EQ(record["termination"], end);
   EXPECT_EQ(end, endOf(row.name));
+  for (const auto& step : record["steps"]) {
+    EXPECT_NE(step["termination"], "not-run") << step;
+    EXPECT_EQ(step.dump().find("null"), std::string::npos) << step;
+  }
+  EXPECT_EQ(record["options"].dump().find("null"), std::string::npos) << record["options"];
   EXPECT_TRUE(reachedGoal(valueOf<Termination>(end)) || made.exitCode == 3) << made;
   const auto limit = std::find(row.words.begin(), row.words.end(), "--max-iterations");
   EXPECT_EQ(limit != row.words.end(), end == "max-iterations");

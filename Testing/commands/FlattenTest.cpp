@@ -496,7 +496,7 @@ TEST(FlattenRegions, SeveralLabelsAndKeysMakeOnePatch) {
 }
 
 /// A limit that has passed before any work begins: what the help promises does not hang on a clock.
-TEST(FlattenLimit, AMapIsWrittenWhereverTheSearchForCutsIsStoppedAndTheRunGoesOn) {
+TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesOn) {
   TemporaryFolder folder;
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
   const auto withWords = [&](std::vector<std::string> more, const std::string& out,
@@ -519,11 +519,8 @@ TEST(FlattenLimit, AMapIsWrittenWhereverTheSearchForCutsIsStoppedAndTheRunGoesOn
   ASSERT_NE(stopped.err.find(kWithinTheSearch), std::string::npos) << stopped;
   const auto summary = readJson(folder / "a/summary.json");
   EXPECT_EQ(summary["termination"], "interrupted");
-  EXPECT_EQ(summary["turned_over"], 0);
-  EXPECT_EQ(summary["rim_crossings"], 0);
-  const auto map = io::readSurface(folder / "a/patch_flat.surf.gii").mesh;
-  EXPECT_GT(map.faceCount(), 19000);
-  EXPECT_TRUE(geometry::findSelfIntersections(map).empty());
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/cuts.tsv"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/flat.surf.gii")) << "no map of half the cuts";
   EXPECT_EQ(withWords({"--resume"}, "a").exitCode, 0);
   EXPECT_EQ(withWords({}, "b").exitCode, 0);
   EXPECT_EQ(readText(folder / "a/flat.surf.gii"), readText(folder / "b/flat.surf.gii"));

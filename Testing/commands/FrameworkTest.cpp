@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every command has from Applications/Common, tried on the quickest of them.
 
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Testing/KillMoments.h"
+#include "Limits.h"
 
 #include <gtest/gtest.h>
 
@@ -14,6 +16,23 @@
 
 namespace explica::testing {
 namespace {
+
+TEST(TimeLimit, TimeKeptForWhatFollowsEndsTheWorkEarlierAndForGood) {
+  using app::timeIsOver;
+  EXPECT_FALSE(timeIsOver());
+  app::TimeLimit limit(1e6);
+  EXPECT_FALSE(timeIsOver());
+  EXPECT_EQ(app::causeOf(Termination::Interrupted), Termination::Interrupted);
+  {
+    const app::TimeKept half(5e5);
+    EXPECT_FALSE(timeIsOver());
+    const app::TimeKept rest(6e5);
+    EXPECT_TRUE(timeIsOver());
+  }
+  EXPECT_TRUE(timeIsOver()) << "what was asked to end is not asked to go on";
+  EXPECT_EQ(app::causeOf(Termination::Interrupted), Termination::MaxTime);
+  EXPECT_EQ(app::causeOf(Termination::Converged), Termination::Converged);
+}
 
 namespace fs = std::filesystem;
 using ::testing::Test;
@@ -106,6 +125,49 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
     EXPECT_TRUE(result.out.empty()) << result;
   }
   EXPECT_TRUE(folder.entries().empty());
+}
+
+TEST(Framework, ARecordThatIsAbsentAndOneThatIsNoneAreToldApart) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "none");
+  std::filesystem::create_directories(folder / "other");
+  writeText(folder / "none/provenance.json", "{not json");
+  writeText(folder / "other/provenance.json", R"({"command": "phantom shell"})");
+  for (const char* command : {"verify", "history", "replay", "report"}) {
+    std::vector<std::string> words = {command, folder / "none"};
+    if (words[0] == "replay") words.insert(words.end(), {"--out", folder / "a"});
+    for (const auto& [name, expected] :
+         {std::pair{"none", "none/provenance.json, line 1: is not JSON"},
+          {"other", "other/provenance.json: not a provenance record of Explica"}}) {
+      words[1] = folder / name;
+      const auto result = explica(words);
+      EXPECT_EQ(result.exitCode, 2) << result;
+      EXPECT_TRUE(contains(result.err, expected)) << result;
+    }
+  }
+}
+
+TEST(Framework, EveryPlaceToWriteIsCheckedBeforeTheWork) {
+  const TemporaryFolder folder;
+  writeText(folder / "file", "");
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "24", "--out", folder / "shell"}).exitCode, 0);
+  const std::string labels = folder / "shell/labels.nii.gz", place = folder / "file/x";
+  const std::vector<std::vector<std::string>> rows = {
+      {"surface", labels, "--freesurfer", place, "--out", folder / "a"},
+      {"run", labels, "--steps", "surface", "--surface.freesurfer", place, "--out", folder / "a"},
+      {"surface", labels, "--out", place},
+      {"surface", labels, "--log", place, "--out", folder / "a"},
+  };
+  const auto before = folder.entries();
+  for (const auto& row : rows) {
+    auto words = row;
+    words.emplace_back("--verbose");
+    const auto result = explica(words);
+    EXPECT_TRUE(result.exitCode == 2 || result.exitCode == 4) << result;
+    EXPECT_TRUE(contains(result.err, folder / "file")) << result;
+    EXPECT_FALSE(contains(result.err, "tissue\n")) << "a step was begun: " << result;
+    EXPECT_EQ(folder.entries(), before);
+  }
 }
 
 TEST(Framework, AFolderWithoutARecordIsSaidSo) {

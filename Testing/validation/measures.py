@@ -120,11 +120,17 @@ class Comparison:
     names: tuple  # of the regions
 
 
-def compare_with_freesurfer(made, side, motion=np.eye(4)):
-    """What a surface step made of bert's head, or of that head moved by motion (RAS mm)."""
+def map_named(path, name):
+    """One map of a GIFTI file by its name, a value per vertex."""
+    return next(d.data for d in nib.load(path).darrays if d.meta["Name"] == name).astype(float)
+
+
+def compare_with_freesurfer(made, side, motion=np.eye(4), measure="thickness"):
+    """What a surface step made of bert's head, or of that head moved by motion (RAS mm), by one of the maps of
+    thickness.shape.gii."""
     white = nib.load(made / "white.surf.gii")
     positions, faces = white.agg_data("pointset").astype(float), white.agg_data("triangle")
-    thickness = nib.load(made / "thickness.shape.gii").darrays[0].data.astype(float)
+    thickness = map_named(made / "thickness.shape.gii", measure)
     points, reference = known_points(side)
     points = nib.affines.apply_affine(motion, points)
     apart, face = nearest_faces(points, positions, faces)
@@ -146,6 +152,7 @@ def beside_freesurfer(explica, page, made, side, kind):
     found = compare_with_freesurfer(made, side)
     at, reference = found.points
     b, a = found.regions
+    nearest = compare_with_freesurfer(made, side, measure="thickness_nearest")
     figures.scatter_and_bland_altman(page / f"bert-{side}h-{kind.replace(' ', '-')}.svg",
                                      found.names, a, b, on)
     command = made.command
@@ -164,6 +171,10 @@ def beside_freesurfer(explica, page, made, side, kind):
                  command),
         Measured("regional mean thickness, largest difference", on, float(np.abs(b - a).max()),
                  "mm", 0.08, command),
+        Measured("nearest distance at known points, mean difference", on,
+                 float((nearest.points[0] - nearest.points[1]).mean()), "mm", 0.03, command),
+        Measured("regional mean of the nearest distance, mean difference", on,
+                 float((nearest.regions[0] - nearest.regions[1]).mean()), "mm", 0.03, command),
         Measured("pairs of faces that cross, white and pial", on,
                  made.summary["self_intersections"], "", 0, command),
     ]

@@ -59,6 +59,7 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"unfold", "keep-areas", "", "areas are always kept"},
      {"unfold", "lift-weight", "", kTrade},
      {"unfold", "map", "label"},
+     {"unfold", "max-time", "", "--max-time holds for the whole command"},
      {"unfold", "overhang-weight", "", kTrade},
      {"unfold", "region", "label-key"},
      {"unfold", "view-weights", "", "name a viewpoint several times for more weight"}});

@@ -4,8 +4,10 @@
 #include "Limits.h"
 
 #include "Explica/Application/Execute.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Core/Errors.h"
 #include "Leavings.h"
+#include "Signals.h"
 
 #include <poll.h>
 #include <sys/resource.h>
@@ -21,6 +23,9 @@ namespace {
 
 constexpr double kGraceShare = 0.25;  // of the limit, for work to come to a consistent state
 constexpr double kGraceSeconds = 10;  // for a command to write what it reached
+
+std::atomic<TimeLimit*> limitOfProcess = nullptr;
+std::atomic<double> secondsKept = 0;
 
 std::chrono::steady_clock::duration duration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -58,9 +63,11 @@ TimeLimit::TimeLimit(double seconds) : end_(Clock::now() + duration(seconds)) {
     sayAtTheEnd("error: explica: did not come to a stop after --max-time; ended without results\n");
     _exit(kEnvironment);
   });
+  limitOfProcess = this;
 }
 
 TimeLimit::~TimeLimit() {
+  limitOfProcess = nullptr;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     over_ = true;
@@ -69,8 +76,27 @@ TimeLimit::~TimeLimit() {
   guard_.join();
 }
 
-bool TimeLimit::passed() const {
-  return Clock::now() >= end_;
+bool TimeLimit::passed() {
+  if (Clock::now() >= end_ - duration(secondsKept)) passed_ = true;
+  return passed_;
+}
+
+bool timeIsOver() {
+  TimeLimit* const limit = limitOfProcess;
+  return limit != nullptr && limit->passed();
+}
+
+TimeKept::TimeKept(double seconds) : seconds_(seconds) {
+  secondsKept += seconds_;
+}
+
+TimeKept::~TimeKept() {
+  secondsKept -= seconds_;
+}
+
+Termination causeOf(Termination termination) {
+  const bool byTime = termination == Termination::Interrupted && !signalled() && timeIsOver();
+  return byTime ? Termination::MaxTime : termination;
 }
 
 void limitMemory(int megabytes) {

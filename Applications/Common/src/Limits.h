@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>
@@ -19,17 +20,22 @@ class TimeLimit {
   TimeLimit(const TimeLimit&) = delete;
   TimeLimit& operator=(const TimeLimit&) = delete;
 
-  [[nodiscard]] bool passed() const;
+  /// Less the time that is kept for output; once passed, it stays so.
+  [[nodiscard]] bool passed();
 
  private:
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point end_;
+  std::atomic<bool> passed_ = false;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool over_ = false;
   std::thread guard_;
 };
+
+/// Whether the limit of this process, if it has one, has passed.
+[[nodiscard]] bool timeIsOver();
 
 /// What is said when memory, or room for another thread's, is at an end.
 inline constexpr char kOutOfMemory[] =

@@ -142,14 +142,6 @@ void writeReport(const Run& run, const Outcome& outcome, Console& console) {
   execute(page, console);
 }
 
-/// --max-time, of all commands or the command's own.
-std::optional<double> maxTimeOf(const Run& run) {
-  const Parameter* own = run.invocation.declaration.find("max-time");
-  if (own == nullptr) return run.common.maxTime;
-  const Json value = provenance::valueOf(own->option);
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-
 int runCommandLine(std::vector<std::string> words, const std::vector<std::string>& argv,
                    Console& console, std::string& commandName) {
   if (words.empty()) {
@@ -189,7 +181,7 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
 
   if (run.common.maxMemory) limitMemory(*run.common.maxMemory);
   std::optional<TimeLimit> limit;
-  if (const auto seconds = maxTimeOf(run)) run.limit = &limit.emplace(*seconds);
+  if (run.common.maxTime) limit.emplace(*run.common.maxTime);
   const Outcome outcome = execute(run, console);
   report(run, outcome, console);
   writeReport(run, outcome, console);

@@ -108,7 +108,7 @@ std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOp
     if (concernsOutput && !declaration.writesOutput && !looksOnly) continue;
     if (option.name == "accept" && !filesMeet(declaration)) continue;
     if (option.name == "report" && !mayBeReported(declaration)) continue;
-    if (declaration.find(option.name) != nullptr) continue;  // a command's own --max-time
+    if (declaration.find(option.name) != nullptr) continue;  // a command's own
     Parameter parameter;
     parameter.option = std::move(option);
     parameter.option.category = "Common";

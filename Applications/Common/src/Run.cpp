@@ -3,12 +3,14 @@
 
 #include "Run.h"
 
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/IO/ItkFormats.h"
 #include "Explica/Provenance/Doubts.h"
+#include "Limits.h"
 #include "RunState.h"
 #include "Signals.h"
 
@@ -131,8 +133,7 @@ Monitor monitorOf(Run& run, Console& console, provenance::Record& record, std::m
     console.progress(fraction, run.prefix + std::string(activity));
   };
   monitor.stopWanted = [&] {
-    return run.parent ? run.parent->shouldStop()
-                      : endWanted() || (run.limit && run.limit->passed());
+    return run.parent ? run.parent->shouldStop() : endWanted() || timeIsOver();
   };
   return monitor;
 }
@@ -161,13 +162,10 @@ void openFolder(Run& run, Context::State& state) {
 }
 
 /// How the command ended, as its exit code says it.
-Outcome outcomeOf(Termination termination, const Run& run, const Context::State& state) {
+Outcome outcomeOf(Termination termination, const Context::State& state) {
   if (termination == Termination::NotRun) termination = Termination::Finished;
-  if (termination == Termination::Interrupted && !signalled() && run.limit && run.limit->passed()) {
-    termination = Termination::MaxTime;
-  }
   Outcome outcome;
-  outcome.termination = termination;
+  outcome.termination = causeOf(termination);
   outcome.plausible = !state.doubtful();
   outcome.exitCode = reachedGoal(termination) && outcome.plausible ? kDone : kStoppedEarly;
   return outcome;
@@ -257,17 +255,17 @@ Outcome execute(Run& run, Console& console) {
     openFolder(run, state);
     termination = run.invocation.run(context);
   } catch (const DryRunEnds&) {
-    return outcomeOf(Termination::NotRun, run, state);
+    return outcomeOf(Termination::NotRun, state);
   } catch (const Interrupted&) {
     console.endProgress();
-    Outcome outcome = outcomeOf(Termination::Interrupted, run, state);
+    Outcome outcome = outcomeOf(Termination::Interrupted, state);
     outcome.abandoned = true;
     return outcome;
   } catch (const InvalidInput& error) {
     throw InvalidInput(withInputNames(error.what(), record, run.given));
   }
   console.endProgress();
-  Outcome outcome = outcomeOf(termination, run, state);
+  Outcome outcome = outcomeOf(termination, state);
   if (run.common.dryRun) return outcome;
   if (!state.folder) return outcome;
   record.termination = outcome.termination;

@@ -4,7 +4,6 @@
 
 #include "Console.h"
 #include "Explica/Application/Execute.h"
-#include "Limits.h"
 
 #include <set>
 #include <string>
@@ -16,12 +15,11 @@ namespace explica::app {
 struct Run {
   Invocation invocation;
   CommonOptions common;
-  std::set<std::string> given;       ///< names that the user set
-  std::vector<std::string> argv;     ///< for the record
-  const Monitor* parent = nullptr;   ///< of the command that this one is a step of
-  std::string name;                  ///< as a step of the parent: "unfold: "
-  std::string prefix;                ///< starts its messages: the names of all above and its own
-  const TimeLimit* limit = nullptr;  ///< of the whole process
+  std::set<std::string> given;      ///< names that the user set
+  std::vector<std::string> argv;    ///< for the record
+  const Monitor* parent = nullptr;  ///< of the command that this one is a step of
+  std::string name;                 ///< as a step of the parent: "unfold: "
+  std::string prefix;               ///< starts its messages: the names of all above and its own
 };
 
 /// Checks inputs and output folder, runs, writes summary and record, and makes the results appear.

@@ -30,7 +30,6 @@ Run nestedRun(const Command& command, const Json& options, const Run& outer,
   nested.common = outer.common;
   nested.argv = {"explica", command.name(), provenance::textOf(options)};
   nested.parent = &monitor;
-  nested.limit = outer.limit;
   return nested;
 }
 

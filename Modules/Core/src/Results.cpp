@@ -106,9 +106,13 @@ std::string Result::expectation(const Limit& limit) const {
 
 std::string Result::sentence() const {
   const auto measure = measureOf(value);
-  std::string text = title + ": " + (measure ? inWords(*this, *measure) : "not known");
-  if (!measure || limits.empty()) return text;
-  return text + "; " + expectation(decisive(limits, *measure));
+  if (!measure) return title + ": not known";
+  std::string words = inWords(*this, *measure);
+  if (limits.empty()) return title + ": " + words;
+  const Limit& limit = decisive(limits, *measure);
+  if (*measure < limit.least && words == inWords(*this, limit.least)) words = "just below " + words;
+  if (*measure > limit.most && words == inWords(*this, limit.most)) words = "just above " + words;
+  return title + ": " + words + "; " + expectation(limit);
 }
 
 Result& Results::add(Result result) {

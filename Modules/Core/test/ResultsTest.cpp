@@ -60,6 +60,18 @@ TEST(Results, FlagsAndTextsHaveLimits) {
             "Mean thickness: 5.4 mm; expected 1 to 5 mm (Fischl 2000)");
 }
 
+TEST(Results, AMissThatRoundsToItsLimitIsToldFromIt) {
+  Results t;
+  EXPECT_EQ(
+      t.number("v", "Visibility", "", "", 0.97969).atLeast(0.98, Judgement::Doubt, "").sentence(),
+      "Visibility: just below 0.98; expected at least 0.98");
+  EXPECT_EQ(t.share("s", "Strain", "", 0.090004).atMost(0.09, Judgement::Doubt, "").sentence(),
+            "Strain: just above 9 %; expected at most 9 %");
+  EXPECT_EQ(
+      t.number("w", "Visibility", "", "", 0.98).atLeast(0.98, Judgement::Doubt, "").sentence(),
+      "Visibility: 0.98; expected at least 0.98");
+}
+
 TEST(Results, AKeyIsDescribedOnceAndMayBeAPattern) {
   Results t;
   t.share("known_*", "Known", "", std::nullopt);

@@ -67,28 +67,6 @@ FlatPositions placed(const Disc& disc, FlatPositions flat, const Eigen::Matrix2d
   return rounded(flat.topRows(disc.mesh.vertexCount()));
 }
 
-/// Asks to stop as `monitor` does, and where one more iteration would not fit into the time.
-class Limited {
- public:
-  Limited(const Monitor& monitor, std::optional<double> seconds) : monitor_(monitor) {
-    if (!seconds) return;
-    monitor_.stopWanted = [this, &monitor, limit = *seconds] {
-      const double now = seconds_();
-      const double next = asked_ > 0 ? now + (now - asked_) : now;
-      asked_ = now;
-      return monitor.shouldStop() || next > limit;
-    };
-  }
-  Limited(const Limited&) = delete;
-  Limited& operator=(const Limited&) = delete;
-  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
-
- private:
-  Monitor monitor_;
-  Stopwatch seconds_;
-  double asked_ = 0;  ///< s: an iteration lies between two questions
-};
-
 void requireInRange(const FlattenOptions& options) {
   const auto positive = [](const char* name, double value) {
     if (!(value > 0) || !std::isfinite(value)) {
@@ -99,7 +77,6 @@ void requireInRange(const FlattenOptions& options) {
   positive("contact-range", options.contactRange);
   positive("tolerance", options.tolerance);
   positive("max-iterations", options.maxIterations);
-  positive("max-time", options.maxTime.value_or(1));
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
 }
 
@@ -133,17 +110,13 @@ FlatMap flatten(const Disc& disc, const FlattenOptions& options, const Monitor& 
   if (resume != nullptr && resume->level >= 0 && resume->disc != sum) {
     throw InvalidInput("state: it belongs to another surface, or to other cuts");
   }
-  const Limited limited(monitor, options.maxTime);
   const IntrinsicDisc piece = intrinsicDisc(disc);
   const auto areaError = [&](const FlatPositions& flat) { return meanAreaError(disc, flat); };
-  Laid laid = layFlat(piece, areaError, options, limited.monitor(), resume);
+  Laid laid = layFlat(piece, areaError, options, monitor, resume);
   FlatMap map;
   map.energy = laid.energy;
   map.iterations = laid.iterations;
   map.termination = laid.termination;
-  if (map.termination == Termination::Interrupted && !monitor.shouldStop()) {
-    map.termination = Termination::MaxTime;
-  }
   map.areaWeight = laid.state.areaWeight;
   map.state = std::move(laid.state);
   map.state.disc = sum;

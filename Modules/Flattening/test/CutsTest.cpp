@@ -315,8 +315,9 @@ TEST(Checkpoint, GivesBackCutsAndMap) {
   kept.cuts = findCuts(disc, depthOf(mesh, disc));
   FlattenOptions options;
   options.frames = 2;
-  options.maxTime = 1e-9;
-  kept.map = flatten(openedAlong(disc, pathsOf(*kept.cuts)), options).state;
+  Monitor atOnce;
+  atOnce.stopWanted = [] { return true; };
+  kept.map = flatten(openedAlong(disc, pathsOf(*kept.cuts)), options, atOnce).state;
   const auto path = std::filesystem::temp_directory_path() /
                     ("explica-flat-" + std::to_string(::getpid()) + ".state");
   writeCheckpoint(path, kept);

@@ -257,17 +257,6 @@ TEST(Flatten, LobesBehindLobesStayOneToOne) {
   expectOneToOne(disc, flatten(disc, options, stoppingAt(0, asked)));
 }
 
-TEST(Flatten, AnExpiredTimeStillGivesAWholeMap) {
-  const Disc disc = foldedCap();
-  FlattenOptions options;
-  options.maxTime = 1e-9;
-  const FlatMap map = flatten(disc, options);
-  EXPECT_EQ(map.termination, Termination::MaxTime);
-  expectOneToOne(disc, map);
-  options.maxTime.reset();
-  EXPECT_TRUE(flatten(disc, options, {}, &map.state).positions == flatten(disc).positions);
-}
-
 TEST(Flatten, ASmallerAreaToleranceTakesAFinishedMapFurther) {
   const Disc disc = foldedCap();
   FlattenOptions options;

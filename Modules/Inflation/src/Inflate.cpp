@@ -42,7 +42,6 @@ void requireUsable(const TriangleMesh& mesh, const InflateOptions& options) {
   if (options.lookEvery < 1) throw InvalidInput("look-every: must be positive");
   if (options.viewpoints < 1) throw InvalidInput("viewpoints: must be positive");
   if (options.maxIterations < 1) throw InvalidInput("max-iterations: must be positive");
-  if (options.maxTime && !(*options.maxTime > 0)) throw InvalidInput("max-time: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
 }
 
@@ -109,7 +108,6 @@ class Inflation {
   void run() {
     const double earlier = history_.back().seconds;
     while ((termination_ = reasonToStop()) == Termination::NotRun) {
-      const double before = elapsed_();
       const unfolding::UnfoldState last = unfolder_.state();
       try {
         const StopScope abandoned(&monitor_);
@@ -123,7 +121,6 @@ class Inflation {
         termination_ = Termination::Interrupted;
         break;
       }
-      latest_ = elapsed_() - before;
       history_.push_back(unfolder_.record());
       history_.back().seconds = earlier + elapsed_();
       keepPath();
@@ -186,7 +183,6 @@ class Inflation {
     }
     if (iteration >= options_.maxIterations) return Termination::MaxIterations;
     if (monitor_.shouldStop()) return Termination::Interrupted;
-    if (options_.maxTime && elapsed_() + latest_ > *options_.maxTime) return Termination::MaxTime;
     return Termination::NotRun;
   }
 
@@ -214,7 +210,6 @@ class Inflation {
   std::vector<unfolding::IterationRecord> history_;
   std::vector<Look> looks_, ending_;
   std::vector<Positions> path_;  ///< if frames are asked for
-  double latest_ = 0;            ///< s, that the last step took: one more shall still fit
   Termination termination_ = Termination::NotRun;
 };
 

@@ -176,7 +176,6 @@ TEST(Inflate, RefusesWhatItCannotInflate) {
   refused([](InflateOptions& o) { o.lookEvery = 0; });
   refused([](InflateOptions& o) { o.viewpoints = 0; });
   refused([](InflateOptions& o) { o.maxIterations = 0; });
-  refused([](InflateOptions& o) { o.maxTime = -1; });
   refused([](InflateOptions& o) { o.frames = -1; });
   const unfolding::Checkpoint foreign;
   EXPECT_THROW((void)inflate(mesh, {}, {}, &foreign), InvalidInput);

@@ -17,7 +17,7 @@ class ExplicitMethod final : public UnfoldingMethod {
  public:
   explicit ExplicitMethod(UnfoldingProblem& problem) : problem_(problem) {}
 
-  double advance(const Monitor&) override {
+  double advance() override {
     const PolygonUnfoldingOptions& options = problem_.options();
     const Curve& curve = problem_.curve();
     Positions2 flow = options.visibilityGain *

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Planar/PolygonVisibility.h"
 #include "UnfoldingProblem.h"
 
@@ -41,7 +42,7 @@ class ImplicitMethod final : public UnfoldingMethod {
         constraints_(static_cast<int>(problem.keptEdges().size())),
         tension_(Eigen::VectorXd::Zero(constraints_)) {}
 
-  double advance(const Monitor& monitor) override {
+  double advance() override {
     const Curve start = problem_.curve();
     const double unit = problem_.meanEdge();
     const double longest = kLongestMove * unit;
@@ -52,13 +53,9 @@ class ImplicitMethod final : public UnfoldingMethod {
     knotWeight_ = problem_.options().knotWeight * std::min(1.0, hidden);
     Eigen::VectorXd gradient;
     const double energy = evaluate(start, pairs, &gradient);
-    const double dampingBefore = damping_;
 
     for (int trial = 0; trial < kMostTrials && damping_ <= kMostDamping; ++trial) {
-      if (monitor.shouldStop()) {
-        damping_ = dampingBefore;
-        return 0;
-      }
+      checkpoint();
       factorize(start, pairs);
       Eigen::VectorXd right(unknowns_ + constraints_);
       right << -gradient, Eigen::VectorXd::Zero(constraints_);
@@ -225,7 +222,11 @@ class ImplicitMethod final : public UnfoldingMethod {
     }
     matrix_.resize(unknowns_ + constraints_, unknowns_ + constraints_);
     matrix_.setFromTriplets(entries_.begin(), entries_.end());
-    solver_.compute(matrix_);
+    checkpoint();
+    solver_.analyzePattern(matrix_);
+    checkpoint();
+    solver_.factorize(matrix_);
+    checkpoint();
   }
 
   /// Newton steps back to the kept lengths in the metric of the last factorisation.

@@ -4,6 +4,7 @@
 #include "Explica/Planar/PolygonUnfolding.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Planar/PolygonKnotEnergy.h"
 #include "Explica/Planar/PolygonVisibility.h"
@@ -26,7 +27,6 @@ void checkOptions(const PolygonUnfoldingOptions& options) {
   };
   refuse(!(options.targetVisibility <= 1), "target visibility: at most 1 can be reached");
   refuse(options.maxIterations < 0, "max-iterations must not be negative");
-  refuse(!(options.maxTime > 0), "max-time must be positive");
   refuse(options.collar < 1, "collar: at least one edge is needed");
   refuse(!(options.knotWeight >= 0), "knot-weight must not be negative");
   refuse(!(options.explicitStep > 0 && options.explicitStep <= 1),
@@ -117,15 +117,22 @@ class PolygonRun {
       return Termination::Stalled;
     }
     if (iteration > options_.maxIterations) return Termination::MaxIterations;
-    if (elapsed_() > options_.maxTime) return Termination::MaxTime;
     if (monitor.shouldStop()) return Termination::Interrupted;
     return {};
   }
 
-  /// One iteration.
+  /// One iteration, or none if the monitor asks for an end during it.
   /// @return whether anything moved
   bool advance(int iteration, const Monitor& monitor) {
-    const double step = method_->advance(monitor);
+    const PolygonMethodState before = method_->state();
+    double step = 0;
+    try {
+      const StopScope abandoned(&monitor);
+      step = method_->advance();
+    } catch (const Interrupted&) {
+      method_->restore(before);
+      return false;
+    }
     bool merges = false;
     while (const auto fewer = problem_->merged()) {
       pose(fewer->first, fewer->second);
@@ -208,6 +215,7 @@ PolygonUnfolding unfoldPolygon(const Curve& input, const Region& inputRegion,
   result.checkpoint.view = view;
   result.checkpoint.method = options.method;
 
+  const StopScope kept(nullptr);  // from here on there is a state to give back
   PolygonRun run(result, view, options, resume);
   for (int iteration = result.history.back().iteration + 1;; ++iteration) {
     const double visibility = result.history.back().visibility;

@@ -78,9 +78,9 @@ class UnfoldingProblem {
 class UnfoldingMethod {
  public:
   virtual ~UnfoldingMethod() = default;
-  /// Moves the problem's curve; returns the largest motion of a vertex, mm, 0 if none was found or
-  /// if `monitor` wanted a stop first, which leaves everything as before the call.
-  virtual double advance(const Monitor& monitor) = 0;
+  /// Moves the problem's curve; returns the largest motion of a vertex, mm, 0 if none was found.
+  /// @throws Interrupted  the curve is as before, the state may not be
+  virtual double advance() = 0;
   /// What the next iteration takes from those before, besides the curve.
   [[nodiscard]] virtual PolygonMethodState state() const { return {}; }
   virtual void restore(const PolygonMethodState&) {}

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -333,14 +334,45 @@ TEST(PolygonUnfolding, WrongInputIsRefused) {
 TEST(PolygonUnfolding, StopsWhenAsked) {
   Monitor monitor;
   int asked = 0;
-  monitor.stopWanted = [&] { return ++asked > 5; };
+  monitor.stopWanted = [&] { return ++asked > 20; };
   const PolygonPhantom phantom = makePolygon34();
   const PolygonUnfolding result =
       unfoldPolygon(phantom.curve, regionOf(phantom), phantom.viewpoint, {}, monitor);
   EXPECT_EQ(result.termination, Termination::Interrupted);
   EXPECT_GE(result.history.size(), 2U);
-  EXPECT_LE(result.history.size(), 6U);  // at least one look an iteration
+  EXPECT_LE(result.history.size(), 21U);  // at least one look an iteration
   EXPECT_EQ(result.path.size(), result.history.size());
+}
+
+/// An iteration on many edges takes seconds: it asks while it sums, and what it began is given up.
+TEST(PolygonUnfolding, AStopWithinAnIterationLeavesTheStateBeforeIt) {
+  Curve circle;
+  circle.positions.resize(5000, 2);
+  for (Eigen::Index v = 0; v < circle.positions.rows(); ++v) {
+    const double t =
+        2 * kPi * static_cast<double>(v) / static_cast<double>(circle.positions.rows());
+    circle.positions.row(v) << 10 * std::cos(t), 10 * std::sin(t);
+  }
+  const Region region = regionBetween(circle, 800, 1700);
+  PolygonUnfoldingOptions options;
+  Monitor monitor;
+  int asked = 0, end = std::numeric_limits<int>::max();
+  monitor.stopWanted = [&] { return ++asked >= end; };
+  options.maxIterations = 1;
+  const PolygonUnfolding once = unfoldPolygon(circle, region, Point2(0, 1000), options, monitor);
+  EXPECT_GT(asked, 10) << "in one iteration";
+  const int first = asked;
+  options.maxIterations = 2;
+  end = 3 * first / 2;
+  asked = 0;
+  const PolygonUnfolding stopped = unfoldPolygon(circle, region, Point2(0, 1000), options, monitor);
+  EXPECT_EQ(stopped.termination, Termination::Interrupted);
+  EXPECT_LE(asked, end + 2);
+  EXPECT_EQ(stopped.curve.positions, once.curve.positions);
+  const PolygonUnfolding whole = unfoldPolygon(circle, region, Point2(0, 1000), options);
+  const PolygonUnfolding resumed =
+      unfoldPolygon(circle, region, Point2(0, 1000), options, {}, &stopped.checkpoint);
+  EXPECT_EQ(resumed.curve.positions, whole.curve.positions);
 }
 
 }  // namespace

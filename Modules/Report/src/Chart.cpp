@@ -49,6 +49,7 @@ double tickStep(double range) {
 struct Axes {
   double x0, x1, y0, y1;
   bool logarithmic = false;
+  bool counts = false;  ///< x are whole numbers, and ticks stand at such
   [[nodiscard]] double scaled(double y) const { return logarithmic ? std::log10(y) : y; }
   [[nodiscard]] double px(double x) const {
     return kLeft + (x - x0) / (x1 - x0) * (kWidth - kLeft - kRight);
@@ -100,7 +101,7 @@ std::string head(const Axes& axes, const ChartText& titles, bool yTicks, double 
   svg += text((kLeft + kWidth - kRight) / 2, kHeight - 8, "middle", titles.xTitle);
   svg +=
       text(-(kTop + kHeight - kBottom) / 2, 14, "middle", titles.yTitle, "transform='rotate(-90)'");
-  const double dx = tickStep(axes.x1 - axes.x0);
+  const double dx = std::max(tickStep(axes.x1 - axes.x0), axes.counts ? 1.0 : 0.0);
   for (double x = std::ceil(axes.x0 / dx - 1e-9) * dx; x <= axes.x1 + 1e-9 * dx; x += dx) {
     svg += "<path class='grid' d='M" + number(axes.px(x)) + " " + number(kTop) + "V" +
            number(kHeight - kBottom) + "'/>";
@@ -214,7 +215,7 @@ std::array<double, 2> bandAt(const Series& series, std::size_t i) {
 
 /// The box of the curves' finite values, a little larger; all of it NaN-free.
 std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithmic) {
-  Axes axes{kInfinity, -kInfinity, kInfinity, -kInfinity, logarithmic};
+  Axes axes{kInfinity, -kInfinity, kInfinity, -kInfinity, logarithmic, true};
   for (const Series& s : series) {
     for (std::size_t i = 0; i < std::min(s.x.size(), s.y.size()); ++i) {
       const auto [below, above] = bandAt(s, i);
@@ -222,6 +223,7 @@ std::optional<Axes> axesAround(const std::vector<Series>& series, bool logarithm
       if (!std::isfinite(s.x[i]) || !std::isfinite(low) || !std::isfinite(high)) continue;
       axes.x0 = std::min(axes.x0, s.x[i]);
       axes.x1 = std::max(axes.x1, s.x[i]);
+      axes.counts = axes.counts && s.x[i] == std::round(s.x[i]);
       axes.y0 = std::min(axes.y0, low);
       axes.y1 = std::max(axes.y1, high);
     }
@@ -246,14 +248,21 @@ std::string strokeOf(std::size_t curve) {
   return " stroke='" + hueOf(curve) + "'" + (curve < kHues.size() ? "" : " stroke-dasharray='6 3'");
 }
 
-std::string pathOf(const Series& series, const Axes& axes) {
-  std::string path;
+/// A curve through its finite values; a dot if there is one only.
+std::string curveOf(const Series& series, std::size_t curve, const Axes& axes) {
+  std::string path, dot;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     const double y = axes.scaled(series.y[i]);
     if (!std::isfinite(y)) continue;
-    path += (path.empty() ? "M" : "L") + number(axes.px(series.x[i])) + " " + number(axes.py(y));
+    const std::string px = number(axes.px(series.x[i])), py = number(axes.py(y));
+    if (path.empty()) {
+      dot = "<circle r='3' fill='" + hueOf(curve) + "' cx='" + px + "' cy='" + py + "'/>";
+    } else {
+      dot.clear();
+    }
+    path += (path.empty() ? "M" : "L") + px + " " + py;
   }
-  return path;
+  return dot.empty() ? "<path class='line'" + strokeOf(curve) + " d='" + path + "'/>" : dot;
 }
 
 /// The outline of a curve's band; empty if it has none.
@@ -333,9 +342,7 @@ std::string curvesSvg(const std::vector<Series>& series, const ChartText& titles
       svg += "<path fill-opacity='0.18' fill='" + hueOf(s) + "' d='" + band + "'/>";
     }
   }
-  for (std::size_t s = 0; s < series.size(); ++s) {
-    svg += "<path class='line'" + strokeOf(s) + " d='" + pathOf(series[s], *axes) + "'/>";
-  }
+  for (std::size_t s = 0; s < series.size(); ++s) svg += curveOf(series[s], s, *axes);
   return svg + legend.svg + "</svg>";
 }
 

@@ -186,18 +186,35 @@ std::string verdictHtml(std::vector<ReportFlag> flags) {
 
 std::string glanceHtml(const ReportGlance& glance);
 
+std::string drawingHtml(const ReportDrawing& drawing) {
+  const std::string title = escapeHtml(drawing.title);
+  return "<div class='wide' tabindex='0' role='region' aria-label='" + title + "'><img alt='" +
+         title + "' class='drawing' src='data:" + drawing.mediaType + ";base64," +
+         base64(drawing.bytes) + "'></div>";
+}
+
+/// The pictures in the head of the page; empty if there are none.
+std::string picturesAtGlance(const ReportContent& content) {
+  std::string html;
+  for (const ReportGlance& glance : content.glance) html += glanceHtml(glance);
+  for (const ReportDrawing& drawing : content.drawings) {
+    if (drawing.guide.empty()) continue;
+    html += "<div class='seen'><h3>" + escapeHtml(drawing.title) + "</h3>" + drawingHtml(drawing) +
+            "<p class='quiet'>" + escapeHtml(drawing.guide) + "</p></div>";
+  }
+  return html;
+}
+
 /// What a reader decides by.
 std::string headHtml(const ReportContent& content) {
-  std::string html = "<section id='verdict'><h2>Is it right?</h2><div class='head'><div>" +
-                     verdictHtml(content.flags);
-  if (!content.facts.empty()) html += table(content.facts);
-  html += "</div>";
-  if (!content.glance.empty()) {
-    html += "<div class='glance'>";
-    for (const ReportGlance& glance : content.glance) html += glanceHtml(glance);
-    html += "</div>";
+  std::string words = "<div>" + verdictHtml(content.flags);
+  if (!content.facts.empty()) words += table(content.facts);
+  words += "</div>";
+  const std::string pictures = picturesAtGlance(content);
+  if (!pictures.empty()) {
+    words = "<div class='head'>" + words + "<div class='glance'>" + pictures + "</div></div>";
   }
-  return html + "</div></section>\n";
+  return "<section id='verdict'><h2>Is it right?</h2>" + words + "</section>\n";
 }
 
 std::string findingsHtml(const ReportFindings& findings) {
@@ -428,12 +445,8 @@ std::string lookHtml(const ReportContent& content) {
                        imageHtml(picture.picture, picture.title));
   }
   for (const ReportDrawing& drawing : content.drawings) {
-    const std::string title = escapeHtml(drawing.title);
-    html +=
-        figureHtml(drawing.id, drawing.title, drawing.caption, true,
-                   "<div class='wide' tabindex='0' role='region' aria-label='" + title +
-                       "'><img alt='" + title + "' class='drawing' src='data:" + drawing.mediaType +
-                       ";base64," + base64(drawing.bytes) + "'></div>");
+    if (!drawing.guide.empty()) continue;
+    html += figureHtml(drawing.id, drawing.title, drawing.caption, true, drawingHtml(drawing));
   }
   if (!content.charts.empty()) html += heading("charts", "Distributions and curves");
   html += chartsHtml(content.charts);

@@ -364,6 +364,32 @@ TEST(Evolution, KeepsValuesThatCanBeReadUnderThePointer) {
   EXPECT_EQ(drawn, given);
 }
 
+TEST(Chart, OneValueIsADotAndFramesAreWhole) {
+  const std::string svg =
+      curvesSvg({{"a", {0, 1}, {2, 3}}, {"b", {0, 1}, {2.5, kNaN}}}, {"t", "", ""});
+  EXPECT_NE(svg.find("<circle"), std::string::npos);
+  EXPECT_EQ(svg.find("<circle"), svg.rfind("<circle")) << "a curve needs no dot";
+  EXPECT_EQ(svg.find(">0.2<"), std::string::npos) << "there is no frame between two frames";
+  EXPECT_NE(curvesSvg({{"a", {0, 0.5, 1}, {2, 3, 4}}}, {"t", "", ""}).find(">0.2<"),
+            std::string::npos);
+}
+
+TEST(Page, ADrawingWithAGuideStandsInTheHead) {
+  ReportContent content;
+  const auto lookOf = [&] {
+    const std::string page = reportPage(content);
+    return page.substr(std::min(page.find("id='look'"), page.size()));
+  };
+  EXPECT_EQ(reportPage(content).find("class='head'"), std::string::npos)
+      << "words take the whole width where there is no picture";
+  content.drawings = {{"", "Slices", "", "image/png", "x"},
+                      {"", "Bull's-eye", "", "image/png", "y", "Right: even."}};
+  EXPECT_NE(reportPage(content).find("class='head'"), std::string::npos);
+  EXPECT_NE(reportPage(content).find("Right: even."), std::string::npos);
+  EXPECT_NE(lookOf().find("Slices"), std::string::npos);
+  EXPECT_EQ(lookOf().find("Bull"), std::string::npos);
+}
+
 TEST(Charts, DrawConstantsAndGaps) {
   EXPECT_NE(histogramSvg(Eigen::VectorXd::Constant(9, 2.0), {"t", "", ""}).find("<svg"),
             std::string::npos);

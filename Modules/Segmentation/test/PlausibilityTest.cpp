@@ -156,6 +156,35 @@ TEST(Plausibility, ABrainStrippedTightlyHasGreyMatterAtItsRim) {
   EXPECT_GT(rimContrast(tissues), 10) << "its only fluid is deep inside";
 }
 
+/// Twice the brightness at one end of the image, vessels of a share of white matter's brightness,
+/// and brighter fat outside the brain.
+std::pair<Volume<float>, TissueSegmentation> withVessels(double brightness) {
+  TissueSegmentation tissue;
+  tissue.labels = ball();
+  const Grid& grid = tissue.labels.grid;
+  tissue.bias = Volume<float>(grid, 1);
+  Volume<float> image(grid, 300);
+  const std::array<float, 4> means = {300, 30, 80, 100};
+  tissue.classes[2].mean = means[kWhite];
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (tissue.labels[v] == 0) continue;
+    ++tissue.brainVoxels;
+    tissue.bias[v] = static_cast<float>(std::exp2(grid.subscripts(v)[0] / 40.0));
+    const bool isVessel = v % 50 == 0;
+    image[v] = tissue.bias[v] *
+               (isVessel ? static_cast<float>(100 * brightness) : means[tissue.labels[v]]);
+  }
+  return {image, tissue};
+}
+
+TEST(Plausibility, VesselsWithContrastAgentAreTold) {
+  const auto [image, tissue] = withVessels(1.3);
+  EXPECT_NEAR(brighterThanWhite(image, tissue), 1.0 / 50, 2e-3);
+  EXPECT_TRUE(judge("bright-in-brain", brighterThanWhite(image, tissue)));
+  const auto [plain, asBright] = withVessels(1.1);
+  EXPECT_EQ(brighterThanWhite(plain, asBright), 0);
+}
+
 TEST(FreeSurferAtlas, IsNotAnAtlasThatCountsFromOne) {
   Volume<Label> aal(cube(5), 0);
   for (Label n = 1; n <= 116; ++n) aal[static_cast<std::size_t>(n)] = n;

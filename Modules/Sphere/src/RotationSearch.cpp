@@ -13,12 +13,10 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kRotations = 4000;              // some 14 degrees apart
-constexpr std::size_t kFollowed = 30;         // of them, best first, no two of them near
-constexpr double kFirstStep = 8 * kPi / 180;  // half of what is between neighbours
-constexpr double kLastStep =
-    0.02 * kPi / 180;  // radians: a fifth of what a sphere may move onto itself
-constexpr int kCoarse = 2, kMiddle = 3, kFine = 5;  // levels of the pyramids
+constexpr int kRotations = 4000;           // some 14 degrees apart
+constexpr std::size_t kFollowed = 30;      // of them, best first, no two of them near
+constexpr double kApart = 16 * kPi / 180;  // radians: a little more than between neighbours
+constexpr int kLevel = 2;                  // of the pyramids: 162 vertices, 16 degrees apart
 
 struct Candidate {
   Eigen::Quaterniond rotation;
@@ -54,43 +52,17 @@ double costOf(const FoldingLevel& moving, const FoldingLevel& target,
   return sum / static_cast<double>(x.rows());
 }
 
-/// Turns about the three axes as long as that helps, by ever smaller angles.
-Candidate descended(const FoldingLevel& moving, const FoldingLevel& target, Candidate at,
-                    double step, double last) {
-  at.cost = costOf(moving, target, at.rotation);
-  for (; step >= last; step /= 2) {
-    for (bool better = true; better;) {
-      better = false;
-      for (int n = 0; n < 6; ++n) {
-        const double angle = n % 2 == 0 ? step : -step;
-        const Eigen::Quaterniond turned =
-            Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector::Unit(n / 2))) * at.rotation;
-        const double cost = costOf(moving, target, turned);
-        if (!(cost < at.cost)) continue;
-        at = {turned.normalized(), cost};
-        better = true;
-      }
-    }
-  }
-  return at;
-}
-
-/// The best candidates of which none is within twice the first step of a better one.
+/// The best candidates of which none is near a better one.
 std::vector<Candidate> apart(const std::vector<Candidate>& sorted) {
   std::vector<Candidate> kept;
   for (const Candidate& one : sorted) {
     const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
-      return better.rotation.angularDistance(one.rotation) < 2 * kFirstStep;
+      return better.rotation.angularDistance(one.rotation) < kApart;
     });
     if (!near) kept.push_back(one);
     if (kept.size() == kFollowed) break;
   }
   return kept;
-}
-
-void sortByCost(std::vector<Candidate>& candidates) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
 }
 
 }  // namespace
@@ -102,17 +74,13 @@ std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& mo
   std::vector<Candidate> candidates(kRotations);
   parallelFor(candidates.size(), 16, [&](std::size_t n) {
     candidates[n].rotation = spiralRotation(static_cast<int>(n));
-    candidates[n].cost = costOf(moving[kCoarse], target[kCoarse], candidates[n].rotation);
+    candidates[n].cost = costOf(moving[kLevel], target[kLevel], candidates[n].rotation);
   });
-  sortByCost(candidates);
-  candidates = apart(candidates);
-  const std::size_t fine = std::min<std::size_t>(kFine, target.size() - 1);
-  Candidate best = candidates.front();
-  best = descended(moving[kMiddle], target[kMiddle], best, kFirstStep, kFirstStep / 8);
-  best = descended(moving[fine], target[fine], best, kFirstStep / 8, kLastStep);
-  candidates.insert(candidates.begin(), best);
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
   std::vector<Eigen::Matrix3d> rotations;
-  for (const Candidate& one : candidates) rotations.push_back(one.rotation.toRotationMatrix());
+  for (const Candidate& one : apart(candidates))
+    rotations.push_back(one.rotation.toRotationMatrix());
   rotations.emplace_back(Eigen::Matrix3d::Identity());
   return rotations;
 }

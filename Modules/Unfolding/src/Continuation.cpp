@@ -22,7 +22,6 @@ void requireUsable(const UnfoldOptions& options) {
   if (!(options.areaTolerance > 0)) throw InvalidInput("area-tolerance: must be positive");
   if (!(options.trade > 0)) throw InvalidInput("trade: must be positive");
   if (options.maxIterations <= 0) throw InvalidInput("max-iterations: must be positive");
-  if (options.maxTime && !(*options.maxTime > 0)) throw InvalidInput("max-time: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
 }
 

@@ -7,7 +7,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Stopwatch.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
@@ -217,11 +216,9 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
 
   const double earlier = result.history.back().seconds;
   const double goal = options.targetVisibility.value_or(1.0);
-  TimeBudget budget(options.maxTime);
   const auto reason = [&] {
     // Before the continuation, which steers: a run that goes on from here is steered once.
     if (monitor.shouldStop()) return Termination::Interrupted;
-    if (!budget.fits(elapsed())) return Termination::MaxTime;
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const bool isFirstLook = unfolder.state().look.iteration < 0;
     const Termination byItself = continuation.next(unfolder, result.history);
@@ -231,10 +228,7 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
       for (Positions& state : path) addStanding(unfolder, movedThen, state);
     }
     if (byItself != Termination::NotRun) return byItself;
-    const double before = elapsed();
-    const bool moved = unfolder.step();
-    budget.stepTook(elapsed() - before);
-    return moved ? Termination::NotRun : Termination::Stalled;
+    return unfolder.step() ? Termination::NotRun : Termination::Stalled;
   };
   while ((result.termination = reason()) == Termination::NotRun) {
     result.history.push_back(unfolder.record());

@@ -53,9 +53,8 @@ void bindFlatMaps(py::module_& m) {
       "`faces` (F, 3) of these N vertices, counter-clockwise; `vertices` (N,) and `region` (F,) "
       "are\n"
       "their numbers in the surface.  No face is turned over and no part lies on another:\n"
-      "`turned_over` and `rim_crossings`, both exact, are 0; so it is of a run that is stopped, "
-      "by\n"
-      "`max_time` or where `progress(fraction, activity)` returns False.  `frames` holds the\n"
+      "`turned_over` and `rim_crossings`, both exact, are 0; so it is of a run that is stopped\n"
+      "where `progress(fraction, activity)` returns False.  `frames` holds the\n"
       "positions on the way from a circle, as many as `frames=` asks for.",
       "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
   defWithOptions<flattening::CutOptions>(

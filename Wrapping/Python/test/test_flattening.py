@@ -40,8 +40,6 @@ class Flattening(unittest.TestCase):
         )
         self.assertEqual(stopped["termination"], "interrupted")
         self.assertEqual((stopped["turned_over"], stopped["rim_crossings"]), (0, 0))
-        brief = explica.flatten((self.positions, self.faces), region=self.region, max_time=1e-9)
-        self.assertEqual((brief["termination"], brief["turned_over"]), ("max-time", 0))
 
     def test_relief_cuts_open_a_ball_so_that_it_lies_flat_with_less_strain(self):
         kept = np.flatnonzero(np.all(self.positions[self.faces][:, :, 2] > -25, axis=1))

@@ -5,7 +5,8 @@
 #include "Explica/Core/Folders.h"
 #include "ReportParts.h"
 
-#include <array>
+#include <algorithm>
+#include <iterator>
 
 namespace explica::pipeline {
 namespace {
@@ -22,17 +23,29 @@ std::string mediaTypeOf(const fs::path& file) {
   return "";
 }
 
-/// What a picture shows, by the name that commands give it.
-std::string titleOfPicture(const std::string& stem) {
-  constexpr std::array kKnown = {
-      std::pair{"bullseye", "The wall's segments"},
-      std::pair{"slices_ed", "Slices at end-diastole"},
-      std::pair{"slices_es", "Slices at end-systole"},
-      std::pair{"field", "Interpolant, tangent field, trajectories and grid in a slice"}};
-  for (const auto& [name, title] : kKnown) {
-    if (stem == name) return title;
-  }
-  return inWords(stem);
+/// A picture by the name that commands give it; with a guide, it stands in the head of the page.
+struct Known {
+  const char *stem, *title, *guide;
+};
+constexpr Known kKnown[] = {
+    {"bullseye", "The wall's segments",
+     "Right: thickness changes little by little from segment to segment. Wrong: one segment far "
+     "from its neighbours; look at its slices."},
+    {"slices_ed", "Slices at end-diastole", ""},
+    {"slices_es", "Slices at end-systole", ""},
+    {"field", "Interpolant, tangent field, trajectories and grid in a slice", ""}};
+
+report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto known = std::find_if(std::begin(kKnown), std::end(kKnown),
+                                  [&](const Known& one) { return stem == one.stem; });
+  const bool isKnown = known != std::end(kKnown);
+  return {"",
+          isKnown ? known->title : inWords(stem),
+          step.name + "/" + file.filename().string(),
+          mediaTypeOf(file),
+          fileText(file),
+          isKnown ? known->guide : ""};
 }
 
 }  // namespace
@@ -48,9 +61,7 @@ void showOwnPictures(ResultFolder& results, const StepFolder& step) {
   }
   if (files.size() > kMostPictures) files.resize(kMostPictures);
   for (const fs::path& file : files) {
-    results.content().drawings.push_back({"", titleOfPicture(file.stem().string()),
-                                          step.name + "/" + file.filename().string(),
-                                          mediaTypeOf(file), fileText(file)});
+    results.content().drawings.push_back(drawingOf(step, file));
   }
 }
 

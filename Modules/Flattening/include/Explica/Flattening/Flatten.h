@@ -3,9 +3,9 @@
 #pragma once
 
 #include "Explica/Core/Describe.h"
+#include "Explica/Core/Frames.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/MapEnergy.h"
 
@@ -23,8 +23,7 @@ struct FlattenOptions {
   double tolerance = 1e-4;  ///< stop once a Newton step promises to lower the energy by less than
                             ///< this share of it
   int maxIterations = 200;  ///< Newton iterations at full resolution, > 0
-  std::optional<double> maxTime;  ///< s, of this run
-  int frames = 0;                 ///< states to keep, evenly spaced along the way of the vertices
+  int frames = 0;           ///< states to keep, evenly spaced along the way of the vertices
 };
 
 template <class Visitor>
@@ -40,7 +39,6 @@ void describe(FlattenOptions& options, Visitor&& visit) {
         options.tolerance);
   visit(Field{"max-iterations", "", "Newton iterations at full resolution at most", 1, 1e6},
         options.maxIterations);
-  visit(Field{"max-time", "s", "stop after this time", kAboveZero}, options.maxTime);
   visit(Field{"frames", "",
               "states to write on the way, evenly spaced along the way that vertices go", 0,
               kMostFrames},

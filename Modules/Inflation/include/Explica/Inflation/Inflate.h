@@ -3,9 +3,9 @@
 #pragma once
 
 #include "Explica/Core/Describe.h"
+#include "Explica/Core/Frames.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Unfold.h"
 
 #include <optional>
@@ -24,8 +24,7 @@ struct InflateOptions {
   double areaWeight = 20;      ///< stiffness of face areas before it is tightened
   double contactRange = 0.25;  ///< of the mean edge length: the contact barrier acts below it
   int maxIterations = 300;     ///< > 0
-  std::optional<double> maxTime;  ///< s, of this run
-  int frames = 0;                 ///< states to keep, evenly spaced in visibility
+  int frames = 0;              ///< states to keep, evenly spaced in visibility
 };
 
 template <class Visitor>
@@ -41,7 +40,6 @@ void describe(InflateOptions& options, Visitor&& visit) {
         options.frames);
   visit(Field{"max-iterations", "", "iterations at most", 1, unfolding::kMostIterations},
         options.maxIterations);
-  visit(Field{"max-time", "s", "stop after this time", kAboveZero}, options.maxTime);
   visit(Field{"smoothing", "",
               "how far along the surface directions are averaged, as a share of the radius of a "
               "sphere of its area: more makes it rounder",

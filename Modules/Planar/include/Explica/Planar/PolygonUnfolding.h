@@ -47,7 +47,6 @@ struct PolygonUnfoldingOptions {
   double knotWeight = 0.02;         ///< implicit method: knot energy against total flux
   double targetVisibility = 0.995;  ///< variance is then below 0.01, since f^2 <= 1
   int maxIterations = 20000;
-  double maxTime = 600;          ///< s
   double visibilityGain = 1000;  ///< thesis method: mu of [Thesis, Eq. 4.15]
   double repulsionGain = 0.02;   ///< thesis method: mu_R of [Thesis, Eq. 4.20]
   double explicitStep = 0.01;    ///< thesis method: largest motion per iteration, in mean edges
@@ -72,7 +71,6 @@ void describe(PolygonUnfoldingOptions& options, Visitor&& visit) {
         options.targetVisibility);
   visit(Field{"max-iterations", "", "stop after this many iterations", 0, 1e9},
         options.maxIterations);
-  visit(Field{"max-time", "s", "stop after this time"}, options.maxTime);
   visit(Field{"visibility-gain", "", "thesis method: mu, the weight of the visibility"},
         options.visibilityGain);
   visit(Field{"repulsion-gain", "", "thesis method: mu_R, the weight of the knot energy"},

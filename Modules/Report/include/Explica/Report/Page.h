@@ -85,6 +85,7 @@ struct ReportDrawing {
   std::string caption;
   std::string mediaType;  ///< "image/svg+xml", "image/png"
   std::string bytes;
+  std::string guide = {};  ///< given: shown in the head of the page, with what right and wrong are
 };
 
 /// Views of surfaces beside each other, all to one scale, with one bar or legend in text.

@@ -76,4 +76,10 @@ struct Flag {
 /// @return NaN if grey matter touches neither
 [[nodiscard]] double greyAtMaskEdge(const Volume<Label>& tissues);
 
+/// Share of the brain that is a fifth brighter than white matter, the brightest tissue of a T1:
+/// arteries by inflow, or vessels and membranes with contrast agent.
+/// @param intensity  the image that was segmented, on the grid of the tissues
+[[nodiscard]] double brighterThanWhite(const Volume<float>& intensity,
+                                       const TissueSegmentation& tissue);
+
 }  // namespace explica::segmentation

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Frames.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Termination.h"
-#include "Explica/Core/TimeBudget.h"
 #include "Explica/Unfolding/Unfolder.h"
 
 #include <array>
@@ -31,7 +31,6 @@ struct UnfoldOptions {
   double trade = kTrade;                   ///< strain that a visibility of 1 is worth, > 0
   double areaTolerance = 0.002;            ///< ... and the mean relative area error is below this
   int maxIterations = 500;                 ///< > 0
-  std::optional<double> maxTime;           ///< s, of this run
   int frames = 0;                          ///< states to keep, evenly spaced in visibility
 };
 
@@ -53,7 +52,6 @@ void describe(UnfoldOptions& options, Visitor&& visit) {
         options.areaTolerance);
   visit(Field{"max-iterations", "", "iterations at most", 1, kMostIterations},
         options.maxIterations);
-  visit(Field{"max-time", "s", "stop after this time", kAboveZero}, options.maxTime);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,
               kMostFrames},
         options.frames);
