@@ -59,7 +59,8 @@ io::LabelMap foundOnTemplate(Context& context, const CortexTemplate& files,
                              const flattening::CutOptions& options) {
   auto step = context.step("cut the template");
   context.input(files.white, "white");
-  const auto white = readSurface(context, "white", files.white, {});
+  const auto white =
+      readSurface(context, "white", files.white, {.space = io::SurfaceSpace::Scanner});
   std::optional<std::string> cortex;
   if (!cortexBeside(files.white) && !files.atlas.empty()) cortex = files.atlas;
   const auto wall = cortexOf(context, files.white, white.mesh, cortex);
@@ -113,7 +114,8 @@ TemplateCuts readTemplateCuts(Context& context, const FlattenSettings& s,
   const io::LabelMap labels = files.cuts.empty()
                                   ? foundOnTemplate(context, files, s.cut)
                                   : io::readVertexLabels(context.input(files.cuts, "cuts"));
-  const TriangleMesh target = readSurface(context, "sphere", files.sphere, {}).mesh;
+  const TriangleMesh target =
+      readSurface(context, "sphere", files.sphere, {.space = io::SurfaceSpace::Scanner}).mesh;
   if (target.vertexCount() != labels.keys.size()) {
     throw InvalidInput("template '" + name + "': its cuts have " +
                        std::to_string(labels.keys.size()) + " vertices, its sphere " +

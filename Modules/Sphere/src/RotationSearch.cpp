@@ -13,8 +13,9 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kRotations = 4000;           // some 14 degrees apart
-constexpr std::size_t kFollowed = 30;      // of them, best first, no two of them near
+constexpr int kRotations = 4000;  // some 14 degrees apart
+constexpr std::size_t kFollowed =
+    30;  // of them, best first, no two of them near: more only take time
 constexpr double kApart = 16 * kPi / 180;  // radians: a little more than between neighbours
 constexpr int kLevel = 2;                  // of the pyramids: 162 vertices, 16 degrees apart
 

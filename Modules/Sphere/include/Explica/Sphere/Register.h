@@ -22,7 +22,7 @@ struct RegisterOptions {
   double smoothness = 5;  ///< a of registerSphere()
   double maxAreal = 2;    ///< m of MapWeights
   int level = 6;          ///< of the finest icosphere, 10 * 4^level + 2 vertices
-  bool rotate = true;     ///< search for the rotation first
+  bool rotate = true;     ///< start from rotations, too
 };
 
 template <class Visitor>
@@ -35,7 +35,9 @@ void describe(RegisterOptions& options, Visitor&& visit) {
   visit(
       Field{"level", "", "finest icosphere on which the map is moved: 10 * 4^N + 2 vertices", 3, 7},
       options.level);
-  visit(Field{"rotate", "", "search all rotations for the best one first"}, options.rotate);
+  visit(
+      Field{"rotate", "", "start from rotations among all, not only from the spheres as they are"},
+      options.rotate);
 }
 
 /// Correlation of folding maps over the sphere's area.
