@@ -53,57 +53,21 @@ std::vector<bool> cortexOfFile(const std::filesystem::path& path, Eigen::Index v
   return cortex;
 }
 
-/// What FreeSurfer or `explica surface` leave beside a surface to say where its cortex is.
-std::optional<std::filesystem::path> besideSurface(const std::filesystem::path& surface) {
-  const std::filesystem::path folder = surface.parent_path();
-  const std::string name = surface.filename().string();
-  std::vector<std::filesystem::path> places = {folder / "valid.shape.gii"};
-  for (const std::string side : {"lh", "rh"}) {
-    if (name.starts_with(side + ".")) {
-      places.push_back(folder / ".." / "label" / (side + ".cortex.label"));
-    }
-  }
-  for (const auto& place : places) {
-    if (std::filesystem::exists(place)) return place.lexically_normal();
-  }
-  return {};
+std::string nameOf(const std::vector<flattening::Cut>& cuts, std::size_t n) {
+  return cuts[n].name.empty() ? "cut " + std::to_string(n + 1) : cuts[n].name;
 }
 
 std::string tableOf(const flattening::Disc& disc, const std::vector<flattening::Cut>& cuts) {
-  std::string text = "cut\tfrom\tto\tvertices\tlength\tdepth\tx\ty\tz\n";
+  std::string text = "cut\tname\tfrom\tto\tvertices\tlength\tdepth\tx\ty\tz\n";
   for (std::size_t n = 0; n < cuts.size(); ++n) {
     const flattening::Cut& cut = cuts[n];
     const Point end = disc.mesh.positions.row(cut.path.back());
-    text += printed("%zu\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
-                    disc.vertexOrigin[cut.path.front()], disc.vertexOrigin[cut.path.back()],
-                    cut.path.size(), cut.length, cut.depth, end.x(), end.y(), end.z());
+    text += printed("%zu\t%s\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
+                    nameOf(cuts, n).c_str(), disc.vertexOrigin[cut.path.front()],
+                    disc.vertexOrigin[cut.path.back()], cut.path.size(), cut.length, cut.depth,
+                    end.x(), end.y(), end.z());
   }
   return text;
-}
-
-/// Key 1 off the disc, 2 and on along the cuts, 0 elsewhere.
-io::LabelMap labelsOf(const flattening::Disc& disc, const std::vector<flattening::Cut>& cuts,
-                      Eigen::Index vertexCount) {
-  constexpr std::array<std::array<float, 4>, 6> kColours = {{{0.90F, 0.10F, 0.10F, 1},
-                                                             {0.10F, 0.35F, 0.90F, 1},
-                                                             {0.10F, 0.65F, 0.20F, 1},
-                                                             {0.95F, 0.60F, 0.05F, 1},
-                                                             {0.60F, 0.20F, 0.75F, 1},
-                                                             {0.05F, 0.70F, 0.75F, 1}}};
-  io::LabelMap labels;
-  labels.name = "cuts";
-  labels.keys.setConstant(vertexCount, 1);
-  for (const std::int32_t v : disc.vertexOrigin) labels.keys[v] = 0;
-  labels.table = {{0, "cortex", {0, 0, 0, 0}}, {1, "medial wall", {0.5F, 0.5F, 0.5F, 1}}};
-  for (std::size_t n = 0; n < cuts.size(); ++n) {
-    const auto key = static_cast<Label>(n + 2);
-    labels.table.push_back({key, "cut " + std::to_string(n + 1), kColours[n % kColours.size()]});
-    for (const std::int32_t v : cuts[n].path) {
-      Label& at = labels.keys[disc.vertexOrigin[v]];
-      if (at == 0) at = key;
-    }
-  }
-  return labels;
 }
 
 void report(Context& context, const flattening::CutPlan& plan,
@@ -130,13 +94,52 @@ void report(Context& context, const flattening::CutPlan& plan,
 
 }  // namespace
 
+std::optional<std::filesystem::path> cortexBeside(const std::filesystem::path& surface) {
+  const std::filesystem::path folder = surface.parent_path();
+  const std::string name = surface.filename().string();
+  std::vector<std::filesystem::path> places = {folder / "valid.shape.gii"};
+  for (const std::string side : {"lh", "rh"}) {
+    if (name.starts_with(side + ".")) {
+      places.push_back(folder / ".." / "label" / (side + ".cortex.label"));
+    }
+  }
+  for (const auto& place : places) {
+    if (std::filesystem::exists(place)) return place.lexically_normal();
+  }
+  return {};
+}
+
+io::LabelMap labelsOf(const flattening::Disc& disc, const std::vector<flattening::Cut>& cuts,
+                      Eigen::Index vertexCount) {
+  constexpr std::array<std::array<float, 4>, 6> kColours = {{{0.90F, 0.10F, 0.10F, 1},
+                                                             {0.10F, 0.35F, 0.90F, 1},
+                                                             {0.10F, 0.65F, 0.20F, 1},
+                                                             {0.95F, 0.60F, 0.05F, 1},
+                                                             {0.60F, 0.20F, 0.75F, 1},
+                                                             {0.05F, 0.70F, 0.75F, 1}}};
+  io::LabelMap labels;
+  labels.name = "cuts";
+  labels.keys.setConstant(vertexCount, 1);
+  for (const std::int32_t v : disc.vertexOrigin) labels.keys[v] = 0;
+  labels.table = {{0, "cortex", {0, 0, 0, 0}}, {1, "medial wall", {0.5F, 0.5F, 0.5F, 1}}};
+  for (std::size_t n = 0; n < cuts.size(); ++n) {
+    const auto key = static_cast<Label>(n + 2);
+    labels.table.push_back({key, nameOf(cuts, n), kColours[n % kColours.size()]});
+    for (const std::int32_t v : cuts[n].path) {
+      Label& at = labels.keys[disc.vertexOrigin[v]];
+      if (at == 0) at = key;
+    }
+  }
+  return labels;
+}
+
 std::vector<bool> cortexOf(Context& context, const std::string& surface, const TriangleMesh& mesh,
                            const std::optional<std::string>& cortex) {
   if (cortex) {
     context.note("cortex", *cortex);
     return cortexOfFile(*cortex, mesh.vertexCount());
   }
-  if (const auto beside = besideSurface(surface)) {
+  if (const auto beside = cortexBeside(surface)) {
     context.info("cortex: by '" + beside->string() + "' beside the surface");
     context.note("cortex", beside->filename().string());
     return cortexOfFile(context.input(*beside, "cortex"), mesh.vertexCount());
@@ -155,6 +158,36 @@ std::vector<bool> cortexOf(Context& context, const std::string& surface, const T
   std::vector<bool> inCortex(wall.size());
   for (std::size_t v = 0; v < wall.size(); ++v) inCortex[v] = !wall[v];
   return inCortex;
+}
+
+flattening::Disc openedAlong(Context& context, const io::LoadedSurface& reference,
+                             const flattening::Disc& disc,
+                             const std::vector<flattening::Cut>& cuts) {
+  writeTextFile(context.output("cuts.tsv"), tableOf(disc, cuts));
+  io::writeGiftiLabel(context.output("cuts.label.gii"),
+                      labelsOf(disc, cuts, reference.mesh.vertexCount()),
+                      reference.metadata.structure);
+  std::vector<flattening::CutPath> paths;
+  for (const flattening::Cut& cut : cuts) paths.push_back(cut.path);
+  return flattening::openedAlong(disc, paths);
+}
+
+flattening::Disc openedAlongTemplate(Context& context, const io::LoadedSurface& reference,
+                                     const flattening::Disc& disc, const TemplateCuts& cuts) {
+  const Eigen::VectorXd depth = flattening::foldDepth(reference.mesh)(disc.vertexOrigin);
+  const Positions places = cuts.places(disc.vertexOrigin, Eigen::all);
+  const auto plan = flattening::cutsAlong(disc, places, cuts.lines, depth);
+  std::string names;
+  for (const flattening::Cut& cut : plan.cuts) names += (names.empty() ? "" : ", ") + cut.name;
+  context.results(plan);
+  context.info(
+      printed("%zu cuts of the template, %.0f mm in all: ", plan.cuts.size(), plan.length()) +
+      names);
+  if (plan.cuts.size() < cuts.lines.size()) {
+    context.warn(std::to_string(cuts.lines.size() - plan.cuts.size()) +
+                 " cuts of the template have no way of their own here and are left out");
+  }
+  return openedAlong(context, reference, disc, plan.cuts);
 }
 
 Opened openedByItself(Context& context, const Monitor& monitor, const io::LoadedSurface& reference,
@@ -178,13 +211,7 @@ Opened openedByItself(Context& context, const Monitor& monitor, const io::Loaded
   }
   const auto& cuts = opened.plan.cuts;
   report(context, opened.plan, options);
-  writeTextFile(context.output("cuts.tsv"), tableOf(disc, cuts));
-  io::writeGiftiLabel(context.output("cuts.label.gii"),
-                      labelsOf(disc, cuts, reference.mesh.vertexCount()),
-                      reference.metadata.structure);
-  std::vector<flattening::CutPath> paths;
-  for (const flattening::Cut& cut : cuts) paths.push_back(cut.path);
-  opened.disc = flattening::openedAlong(disc, paths);
+  opened.disc = openedAlong(context, reference, disc, cuts);
   return opened;
 }
 

@@ -7,7 +7,10 @@
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/State.h"
 #include "Explica/IO/SurfaceFile.h"
+#include "Explica/IO/VertexDataFile.h"
+#include "TemplateCuts.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +25,26 @@ namespace explica::app {
 [[nodiscard]] std::vector<bool> cortexOf(Context& context, const std::string& surface,
                                          const TriangleMesh& mesh,
                                          const std::optional<std::string>& cortex);
+
+/// What FreeSurfer or `explica surface` leave beside a surface to say where its cortex is.
+[[nodiscard]] std::optional<std::filesystem::path> cortexBeside(
+    const std::filesystem::path& surface);
+
+/// Key 1 off the disc, 2 and on along the cuts, which are named or numbered, 0 elsewhere.
+[[nodiscard]] io::LabelMap labelsOf(const flattening::Disc& disc,
+                                    const std::vector<flattening::Cut>& cuts,
+                                    Eigen::Index vertexCount);
+
+/// Writes cuts.tsv and cuts.label.gii, and opens the disc along the cuts.
+[[nodiscard]] flattening::Disc openedAlong(Context& context, const io::LoadedSurface& reference,
+                                           const flattening::Disc& disc,
+                                           const std::vector<flattening::Cut>& cuts);
+
+/// The same along a template's cuts; says and records which.
+[[nodiscard]] flattening::Disc openedAlongTemplate(Context& context,
+                                                   const io::LoadedSurface& reference,
+                                                   const flattening::Disc& disc,
+                                                   const TemplateCuts& cuts);
 
 /// A disc opened along cuts that the program found.
 struct Opened {

@@ -36,8 +36,10 @@ void declareOutputs(Declaration& d) {
       .output("*.patch.flat", FileKind::Any, "the flat map as FreeSurfer writes it")
       .output("*.patch.3d", FileKind::Any, "the patch on the reference, as FreeSurfer writes it")
       .output("cuts.tsv", FileKind::Table,
-              "of --cuts auto: ends (vertices), length (mm), mean depth (standard deviations)")
-      .output("cuts.label.gii", FileKind::VertexLabel, "of --cuts auto: the wall and each cut")
+              "of --cuts auto and template: name, ends (vertices), length (mm), mean depth "
+              "(standard deviations)")
+      .output("cuts.label.gii", FileKind::VertexLabel,
+              "of --cuts auto and template: the wall and each cut")
       .output("distortion.shape.gii", FileKind::VertexData,
               "area ratio, angle change in degrees, edge strain")
       .output("patch_*.label.gii", FileKind::VertexLabel,
@@ -64,6 +66,8 @@ A closed surface needs --center or --vertex with --radius, or --label (a patch),
 
 --cuts auto takes the medial wall out (--cortex; or lh.cortex.label or valid.shape.gii beside the surface; or the flattest fortieth of it) and finds relief cuts: each ends where a conformal map would change lengths most and comes along the sulci, where a way costs half as much for each standard deviation of depth; of five such cuts the one is taken that lowers the strain most for its length, until --cut.strain is reached. No face is lost: vertices along a cut become two, the second copies last in patch.surf.gii. Where a vertex has one place only, what touches a second copy is left out: of flat.surf.gii faces, of FreeSurfer's patches the vertices on cuts.
 
+--cuts template lays the medial wall and the cuts of --template on the surface through its sphere in register (explica register), so that the maps of all people show the same cuts. They are those of lh.cuts.label.gii in the template's folder, a label file of its vertices (1 the wall, 2 and on the cuts, each from the wall or an earlier cut inwards) such as --cuts auto writes; else they are found on its white surface, and named by the region in which they end.
+
 The map grows from a circle of few vertices to all of them, and is one-to-one from the start. A run that is stopped, by a signal or by --max-time, writes the cuts found until then or the map as far as it came, whole and one-to-one as ever, and ends with exit code 3; --resume into the same --out goes on to the very map of a run that never stopped. --frames shows the way.
 
 With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.nii.gz gives each cell its place in the tissue (RAS mm), --volumes are resampled into it (--to-volume where they were measured elsewhere), and to_flat.nii.gz gives each voxel of the first volume its u and v (mm in the map) and depth (0 at the white surface, 1 at the pial).)")
@@ -75,17 +79,28 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .example("explica flatten lh.pial --cuts lh.cortex.patch.3d --out flat",
                "A hemisphere with given cuts")
       .example("explica flatten lh.pial --cuts auto --out flat", "A hemisphere, cut by the program")
+      .example("explica flatten sub-01/surface-L/mid.surf.gii --cuts template --out flat",
+               "The same cuts on everybody")
       .reference("Ben-Chen, Gotsman, Bunin 2008, Computer Graphics Forum 27(2):449-458")
       .input("SURFACE", FileKind::Surface, "triangulated surface with a rim, or to be cut",
              s.surface)
       .options("Reading", s.reading)
       .inputOption("reference", FileKind::Surface,
                    "surface with the same vertices whose areas and lengths count", s.reference)
-      .option("Region",
-              Field{"cuts", "",
-                    "what stays of a hemisphere: FreeSurfer patch, label (not 0), flat map, or "
-                    "auto: cuts are found"},
-              s.cuts)
+      .option(
+          "Region",
+          Field{"cuts", "",
+                "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; auto: "
+                "cuts are found; template: those of --template"},
+          s.cuts)
+      .option("Region", Field{"template", "", "whose cuts they are, as of register"},
+              s.templateName)
+      .option("Region", Field{"cut-name", "", "only those of the template's cuts; all by default"},
+              s.cutNames)
+      .inputOption("sphere", FileKind::Surface,
+                   "the surface's sphere in register with the template "
+                   "(default: ?h.sphere.reg beside it, or of explica run)",
+                   s.sphere, "Region")
       .inputOption("cortex", FileKind::VertexData,
                    "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,
                    "Region")
@@ -138,6 +153,7 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .needs({"radius", "metric"}, {"center", "vertex"})
       .needs({"label-key"}, {"label"})
       .needs({"cortex", "cut.strain", "cut.most"}, {"cuts=auto"})
+      .needs({"template", "cut-name", "sphere"}, {"cuts=template"})
       .needs({"depths"}, {"surfaces", "white"})
       .needs({"nearest"}, {"volumes"});
   declareOutputs(d);
@@ -212,6 +228,10 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
     made.state.cuts = std::move(opened.plan);
     if (made.searching()) return made;
     disc = std::move(opened.disc);
+  }
+  if (subject.cuts) {
+    auto step = context.step("cut");
+    disc = openedAlongTemplate(context, subject.reference, disc, *subject.cuts);
   }
   const StopScope kept(nullptr);  // the map is whole at any moment
   made.secondsCut = secondsSince(begin);

@@ -14,7 +14,8 @@
 
 namespace explica::app {
 
-constexpr const char* kAutomatic = "auto";  // of --cuts
+constexpr const char* kAutomatic = "auto";       // of --cuts
+constexpr const char* kOfTemplate = "template";  // of --cuts
 
 /// What `explica flatten` is asked for.
 struct FlattenSettings {
@@ -23,6 +24,8 @@ struct FlattenSettings {
   std::optional<std::string> reference;
   std::optional<std::string> cuts;
   std::optional<std::string> cortex;
+  std::optional<std::string> templateName, sphere;  ///< of --cuts template
+  std::vector<std::string> cutNames;                ///< of these; empty: all
   flattening::CutOptions cut;
   unfolding::RegionOptions region;
   std::vector<std::string> labels;

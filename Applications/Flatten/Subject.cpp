@@ -95,7 +95,12 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
   subject.faces = everyFace(mesh.faces);
-  if (s.cuts) subject.faces = facesOfCuts(context, s, mesh);
+  if (s.cuts == kOfTemplate) {
+    subject.cuts = readTemplateCuts(context, s, mesh);
+    subject.faces = flattening::facesWithoutWall(mesh, subject.cuts->cortex);
+  } else if (s.cuts) {
+    subject.faces = facesOfCuts(context, s, mesh);
+  }
   const bool isBall = s.region.center || s.region.vertex;
   if (isBall) subject.faces = unfolding::selectRegion(mesh, s.region).faces;
   if (!s.labels.empty()) {

@@ -5,7 +5,9 @@
 #include "Explica/Application/Context.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Settings.h"
+#include "TemplateCuts.h"
 
+#include <optional>
 #include <vector>
 
 namespace explica::app {
@@ -14,6 +16,7 @@ namespace explica::app {
 struct Subject {
   io::LoadedSurface reference;
   std::vector<std::int32_t> faces;
+  std::optional<TemplateCuts> cuts;  ///< of --cuts template
 };
 
 /// Reads the surface, the one whose areas and lengths count, and what is laid flat of it.

@@ -88,23 +88,11 @@ void declare(Declaration& d, Settings& s) {
       .output("aparc.tsv", FileKind::Table, "with --volume: key and name of each region");
 }
 
-/// SURFACES and, beside a `surface*` folder of explica run, the `register*` folder of that
-/// hemisphere.
-std::vector<std::string> foldersOf(const Settings& s) {
-  const fs::path surfaces = (fs::path(s.folder) / "").lexically_normal().parent_path();
-  const std::string name = surfaces.filename().string(), step = "surface";
-  std::vector<std::string> folders = {s.folder};
-  if (name.starts_with(step)) {
-    folders.push_back((surfaces.parent_path() / ("register" + name.substr(step.size()))).string());
-  }
-  return folders;
-}
-
 std::string prefixOf(const Settings& s) {
   if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
     throw UsageError("--hemisphere must be L or R");
   }
-  const auto sphere = findFile(foldersOf(s), {"sphere.reg.surf.gii"});
+  const auto sphere = findFile(withRegistration(s.folder), {"sphere.reg.surf.gii"});
   const std::string asked = !s.atlases.empty() ? s.atlases.front() : sphere.value_or("");
   const std::string said = asked.empty() ? "" : io::statedStructure(asked);
   if (!s.hemisphere && said.empty()) {
@@ -249,7 +237,8 @@ void writeVolume(Context& context, const std::array<TriangleMesh, 2>& ribbon, co
 Termination run(Context& context, const Settings& s) {
   const std::string prefix = prefixOf(s);
   const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
-  const auto place = findFile(foldersOf(s), {prefix + "sphere.reg", "sphere.reg.surf.gii"});
+  const auto place =
+      findFile(withRegistration(s.folder), {prefix + "sphere.reg", "sphere.reg.surf.gii"});
   if (!place) {
     throw InvalidInput("'" + s.folder + "': holds no " + prefix +
                        "sphere.reg and no sphere.reg.surf.gii, which explica register writes");

@@ -157,6 +157,68 @@ TEST_F(WholeHemisphere, CutByItselfKeepsDistancesAsWellAsWithCutsMadeByHand) {
   EXPECT_EQ(readText(folder / "again/flat.surf.gii"), readText(folder / "label/flat.surf.gii"));
 }
 
+io::SurfaceMetadata leftHemisphere() {
+  io::SurfaceMetadata metadata;
+  metadata.structure = "CortexLeft";
+  return metadata;
+}
+
+/// A folder with a sphere of 642 vertices, a wall about its south pole and a cut up a meridian.
+void writeTemplate(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  const TriangleMesh sphere = geometry::makeIcosphere(3, 100);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(sphere.vertexCount());
+  io::writeGiftiSurface(folder / "sphere.surf.gii", sphere, leftHemisphere());
+  io::writeGiftiShape(folder / "sulc.shape.gii", {{"sulc", "", zero}}, "CortexLeft");
+  io::writeGiftiShape(folder / "curvature.shape.gii", {{"curv", "", zero}}, "CortexLeft");
+  io::LabelMap cuts{"cuts", {}, {{0, "cortex", {}}, {1, "wall", {}}, {2, "meridian", {}}}};
+  cuts.keys.setZero(sphere.vertexCount());
+  for (Eigen::Index v = 0; v < cuts.keys.size(); ++v) {
+    const Point p = sphere.positions.row(v);
+    if (std::abs(p.y()) < 12 && p.x() > 10) cuts.keys[v] = 2;
+    if (p.z() < -80) cuts.keys[v] = 1;
+  }
+  io::writeGiftiLabel(folder / "cuts.label.gii", cuts, "CortexLeft");
+}
+
+TEST(FlattenTemplate, LaysTheCutsOfATemplateOnASurface) {
+  TemporaryFolder folder;
+  writeTemplate(folder / "template");
+  TriangleMesh mesh = geometry::makeIcosphere(4, 30);
+  const io::SurfaceMetadata left = leftHemisphere();
+  io::writeGiftiSurface(folder / "sphere.reg.surf.gii", mesh, left);
+  mesh.positions.col(0) *= 1.2;
+  io::writeGiftiSurface(folder / "white.surf.gii", mesh, left);
+  const std::vector<std::string> words = {"flatten",    folder / "white.surf.gii",
+                                          "--cuts",     "template",
+                                          "--template", folder / "template"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), words.begin(), words.end());
+    return explica(more);
+  };
+  const auto made = with({"--out", folder / "flat"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  EXPECT_EQ(readJson(folder / "flat/summary.json")["cuts"], 1);
+  EXPECT_NE(readText(folder / "flat/cuts.tsv").find("1\tmeridian\t"), std::string::npos);
+  const auto labels = io::readVertexLabels(folder / "flat/cuts.label.gii", mesh.vertexCount());
+  std::size_t along = 0;
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    EXPECT_EQ(labels.keys[v] == 1 || mesh.positions(v, 2) > -26.5, true);
+    if (labels.keys[v] != 2) continue;
+    ++along;
+    EXPECT_LT(std::abs(mesh.positions(v, 1)), 0.2 * 30);  // the line, and an edge
+    EXPECT_GT(mesh.positions(v, 0), 0);
+  }
+  EXPECT_GT(along, 20U);
+  const auto other = with({"--cut-name", "calcarine", "--out", folder / "other"});
+  EXPECT_EQ(other.exitCode, 2) << other;
+  EXPECT_NE(other.err.find("it has meridian"), std::string::npos) << other;
+  std::filesystem::remove(folder / "sphere.reg.surf.gii");
+  const auto alone = with({"--out", folder / "alone"});
+  EXPECT_EQ(alone.exitCode, 2) << alone;
+  EXPECT_NE(alone.err.find("--sphere"), std::string::npos) << alone;
+}
+
 TEST_F(FlattenCommand, AnUnfoldedPatchIsMeasuredAgainstTheSurfaceThatItsRecordNames) {
   TemporaryFolder folder;
   const std::string mid = middle(folder, "left");

@@ -93,6 +93,16 @@ std::optional<std::string> findFile(const std::vector<std::string>& folders,
   return {};
 }
 
+std::vector<std::string> withRegistration(const std::string& folder) {
+  const fs::path surfaces = (fs::absolute(folder) / "").lexically_normal().parent_path();
+  const std::string name = surfaces.filename().string(), step = "surface";
+  std::vector<std::string> folders = {folder};
+  if (name.starts_with(step)) {
+    folders.push_back((surfaces.parent_path() / ("register" + name.substr(step.size()))).string());
+  }
+  return folders;
+}
+
 bool hasTemplate(const std::string& name) {
   return name != kDefaultTemplate || (fs::exists(kColin27Brain) && fs::exists(kColin27Atlas));
 }
@@ -127,6 +137,7 @@ CortexTemplate findTemplate(Context& context, const std::string& name,
   files.curvatureSd = find("curv_sd", {"curvature_sd.shape.gii"}).value_or("");
   files.atlas = find("aparc.annot", {"regions.label.gii"}).value_or("");
   files.white = find("white", {"white.surf.gii"}).value_or("");
+  files.cuts = find("cuts.label.gii", {"cuts.label.gii"}).value_or("");
   files.pial = find("pial", {"pial.surf.gii"}).value_or("");
   return files;
 }

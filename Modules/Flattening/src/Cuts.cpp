@@ -258,19 +258,6 @@ class CutSearch {
   std::vector<CutPath> paths_;
 };
 
-/// Vertices at holes and, after them, the middles of the fans across: a cut there could take the
-/// disc apart.
-std::vector<bool> atHoles(const Disc& disc, Eigen::Index vertexCount) {
-  std::vector<bool> barred(static_cast<std::size_t>(vertexCount), false);
-  for (const Loop& hole : disc.holes) {
-    for (const std::int32_t v : hole) barred[v] = true;
-  }
-  for (auto v = disc.mesh.vertexCount(); v < vertexCount; ++v) {
-    barred[static_cast<std::size_t>(v)] = true;
-  }
-  return barred;
-}
-
 /// Adds cuts until the strain asked for, or as many as allowed.
 Termination searchOn(CutSearch& search, const CutOptions& options, const Monitor& monitor) {
   while (!(search.strain() <= options.edgeStrain)) {
@@ -310,7 +297,7 @@ CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth, const CutOption
   plan.termination = Termination::Interrupted;
   if (monitor.shouldStop()) return plan;
   const IntrinsicDisc fine = intrinsicDisc(disc);
-  const std::vector<bool> barred = atHoles(disc, fine.mesh.vertexCount);
+  const std::vector<bool> barred = besideHoles(disc, fine.mesh.vertexCount);
   Eigen::VectorXd fineDepth = Eigen::VectorXd::Zero(fine.mesh.vertexCount);
   fineDepth.head(depth.size()) = depth;
   CoarseDisc coarse = coarseDisc(fine, kSearchVertices);

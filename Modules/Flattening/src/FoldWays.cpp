@@ -78,4 +78,15 @@ double FoldWays::depthOf(const CutPath& path) const {
   return length > 0 ? sum / length : 0;
 }
 
+std::vector<bool> besideHoles(const Disc& disc, Eigen::Index vertexCount) {
+  std::vector<bool> barred(static_cast<std::size_t>(vertexCount), false);
+  for (const Loop& hole : disc.holes) {
+    for (const std::int32_t v : hole) barred[v] = true;
+  }
+  for (auto v = disc.mesh.vertexCount(); v < vertexCount; ++v) {
+    barred[static_cast<std::size_t>(v)] = true;
+  }
+  return barred;
+}
+
 }  // namespace explica::flattening

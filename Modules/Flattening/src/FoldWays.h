@@ -35,4 +35,8 @@ class FoldWays {
   std::vector<std::vector<Step>> steps_;  ///< of each vertex
 };
 
+/// Vertices at holes and, after the disc's own, the middles of the fans across: a cut there could
+/// take the disc apart.
+[[nodiscard]] std::vector<bool> besideHoles(const Disc& disc, Eigen::Index vertexCount);
+
 }  // namespace explica::flattening

@@ -263,6 +263,50 @@ TEST(Cuts, ASearchThatWasStoppedGoesOnToTheSameCuts) {
   }
 }
 
+/// Largest distance of a point of one set from the other.
+double hausdorff(const Positions& a, const Positions& b) {
+  double largest = 0;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (Eigen::Index v = 0; v < from->rows(); ++v) {
+      largest = std::max(largest, (to->rowwise() - from->row(v)).rowwise().norm().minCoeff());
+    }
+  }
+  return largest;
+}
+
+// Two surfaces of other folds and vertices, one of them turned: their own cuts go to other places.
+TEST(TemplateCuts, LieInTheSamePlacesOnSurfacesOfOtherFoldsAndVertices) {
+  const TriangleMesh sphere = geometry::makeIcosphere(4);
+  VertexKeys keys = VertexKeys::Zero(sphere.vertexCount());
+  for (Eigen::Index v = 0; v < keys.size(); ++v) {
+    const Point p = sphere.positions.row(v);
+    if (std::abs(p.y()) < 0.06 && p.x() > 0.3) keys[v] = 2;                        // a meridian
+    if (std::abs(p.z() - 0.2) < 0.06 && p.y() > 0.06 && p.x() > 0.3) keys[v] = 3;  // off it
+    if (p.z() < -26.0 / 30) keys[v] = 1;
+  }
+  const auto lines = cutLines(sphere, keys, {{1, "wall"}, {2, "trunk"}, {3, "branch"}});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_GT(lines[0].points.bottomRows<1>()(2), 0.8);
+  for (const auto& [levels, sulci, depth] : {std::tuple{5, 4, 0.12}, std::tuple{4, 7, 0.2}}) {
+    const TriangleMesh mesh = sphereWithSulci(levels, sulci, depth);
+    const Disc disc = withoutSouth(mesh);
+    const Positions places = disc.mesh.positions.rowwise().normalized();
+    const CutPlan plan = cutsAlong(disc, places, lines, depthOf(mesh, disc));
+    ASSERT_EQ(plan.cuts.size(), 2U);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const Positions along = places(plan.cuts[n].path, Eigen::all);
+      EXPECT_EQ(plan.cuts[n].name, lines[n].name);
+      EXPECT_LT(hausdorff(along, lines[n].points),
+                0.15);  // half the line's width and an edge of the coarser
+    }
+    const Disc opened = openedAlong(disc, pathsOf(plan));
+    EXPECT_TRUE(opened.holes.empty());
+    EXPECT_TRUE(geometry::inspectMesh(opened.mesh).manifold());
+  }
+  keys = (keys.array() == 1).select(0, keys);
+  EXPECT_THROW((void)cutLines(sphere, keys, {{2, "trunk"}}), InvalidInput);
+}
+
 TEST(Checkpoint, GivesBackCutsAndMap) {
   const TriangleMesh mesh = sphereWithSulci(4, 5, 0.2);
   const Disc disc = withoutSouth(mesh);

@@ -66,7 +66,7 @@ def bert(folder, side):
     labels = nib.load(run / "parcellate/regions.label.gii")
     names = labels.labeltable.get_labels_as_dict()
     found = np.array([names[k] for k in labels.agg_data()])[cKDTree(white).query(points)[1]]
-    cortex = ~np.isin(given, ["unknown", "corpuscallosum", "???", ""])
+    cortex = ~np.isin(given, ["unknown", "corpuscallosum", "none", "???", ""])
     say(f"bert {side}, {cortex.sum()} known points", dice(found[cortex], given[cortex]))
     well = {name: value for name, value in dice(found[cortex], given[cortex]).items()
             if (given == name).sum() >= 1000}

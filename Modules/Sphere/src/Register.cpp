@@ -10,6 +10,9 @@
 #include "RotationSearch.h"
 #include "SphereSolver.h"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -18,6 +21,7 @@ namespace {
 
 constexpr int kCoarsestLevel = 3;       // 642 vertices, 8 degrees apart
 constexpr int kIterations = 30;         // of a level
+constexpr std::size_t kFewer = 4;       // times as many starts on a level as on the next finer
 constexpr double kTolerance = 1e-4;     // of the energy, of which most is what no map goes below
 constexpr double kBarrier = 1e-2;       // b of MapWeights: felt near the bound only
 constexpr double kMarginALevel = 0.05;  // of the bound, kept on coarser levels for the finer
@@ -128,6 +132,19 @@ Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Po
   return result;
 }
 
+/// Where the vertices have come to from one of the rotations.
+struct Start {
+  Positions places;
+  double energy = kInfinity;
+  int iterations = 0;
+};
+
+void keepBest(std::vector<Start>& starts, std::size_t count) {
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.energy < b.energy; });
+  starts.resize(count);
+}
+
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const Eigen::ArrayXd x = a.array() - a.mean(), y = b.array() - b.mean();
   return (x * y).sum() / std::sqrt(x.square().sum() * y.square().sum());
@@ -186,14 +203,18 @@ SphereRegistration registerSphere(const FoldingSphere& moving, const FoldingSphe
   const auto movingMaps = foldingPyramid(moving, options.level);
   const auto targetMaps = foldingPyramid(target, options.level);
   SphereRegistration result;
-  if (options.rotate) result.rotation = searchRotation(movingMaps, targetMaps, monitor);
+  std::vector<Start> starts;
+  const auto rotations = options.rotate ? searchRotations(movingMaps, targetMaps, monitor)
+                                        : std::vector{result.rotation};
 
   const geometry::SphereLocator onMoving(moving.sphere);
   const FoldingLevel& finest = targetMaps.back();
   result.before = correlationAt(moving, onMoving, finest, finest.grid->mesh().positions);
   int level = std::min(kCoarsestLevel, options.level);
   const TriangleMesh* grid = &targetMaps[level].grid->mesh();
-  Positions places = grid->positions * result.rotation;  // y = R^T x
+  for (const Eigen::Matrix3d& rotation : rotations) {
+    starts.push_back({grid->positions * rotation});  // y = R^T x
+  }
   for (;; ++level) {
     monitor.progress(0.2 + 0.7 * level / (options.level + 1),
                      std::to_string(grid->vertexCount()) + " vertices");
@@ -201,15 +222,23 @@ SphereRegistration registerSphere(const FoldingSphere& moving, const FoldingSphe
     const SphereEnergy energy = regularity(*grid, options.smoothness, bound);
     const FoldingEnergy folding(movingMaps[level], targetMaps[level]);
     SphereSolver solver(energy, grid->vertexCount(), &folding);
-    const auto run = solver.lower(places, kIterations, kTolerance, monitor);
-    result.iterations += run.iterations;
-    result.termination = run.termination;
+    for (Start& start : starts) {
+      const auto run = solver.lower(start.places, kIterations, kTolerance, monitor);
+      start.energy = solver.value(start.places);
+      start.iterations += run.iterations;
+      result.termination = run.termination;
+    }
+    keepBest(starts, level == options.level ? 1 : (starts.size() + kFewer - 1) / kFewer);
     if (level == options.level) break;
     const TriangleMesh* finer = &targetMaps[level + 1].grid->mesh();
-    places = refined(*grid, *finer, places);
+    for (Start& start : starts) start.places = refined(*grid, *finer, start.places);
     grid = finer;
   }
   if (result.termination != Termination::Interrupted) result.termination = Termination::Finished;
+  const Positions& places = starts.front().places;
+  result.rotation =
+      Eigen::umeyama(places.transpose(), grid->positions.transpose(), false).topLeftCorner<3, 3>();
+  result.iterations = starts.front().iterations;
   result.after = correlationAt(moving, onMoving, finest, places);
   carry(moving, *grid, places, result);
   const geometry::SphereLocator onTarget(target.sphere);

@@ -13,12 +13,11 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kRotations = 4000;              // some 14 degrees apart
-constexpr std::size_t kFollowed = 12;         // of them, best first
-constexpr double kFirstStep = 8 * kPi / 180;  // half of what is between neighbours
-constexpr double kLastStep =
-    0.02 * kPi / 180;  // radians: a fifth of what a sphere may move onto itself
-constexpr int kCoarse = 2, kMiddle = 3, kFine = 5;  // levels of the pyramids
+constexpr int kRotations = 4000;  // some 14 degrees apart
+constexpr std::size_t kFollowed =
+    30;  // of them, best first, no two of them near: more only take time
+constexpr double kApart = 16 * kPi / 180;  // radians: a little more than between neighbours
+constexpr int kLevel = 2;                  // of the pyramids: 162 vertices, 16 degrees apart
 
 struct Candidate {
   Eigen::Quaterniond rotation;
@@ -54,53 +53,37 @@ double costOf(const FoldingLevel& moving, const FoldingLevel& target,
   return sum / static_cast<double>(x.rows());
 }
 
-/// Turns about the three axes as long as that helps, by ever smaller angles.
-Candidate descended(const FoldingLevel& moving, const FoldingLevel& target, Candidate at,
-                    double step, double last) {
-  at.cost = costOf(moving, target, at.rotation);
-  for (; step >= last; step /= 2) {
-    for (bool better = true; better;) {
-      better = false;
-      for (int n = 0; n < 6; ++n) {
-        const double angle = n % 2 == 0 ? step : -step;
-        const Eigen::Quaterniond turned =
-            Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vector::Unit(n / 2))) * at.rotation;
-        const double cost = costOf(moving, target, turned);
-        if (!(cost < at.cost)) continue;
-        at = {turned.normalized(), cost};
-        better = true;
-      }
-    }
+/// The best candidates of which none is near a better one.
+std::vector<Candidate> apart(const std::vector<Candidate>& sorted) {
+  std::vector<Candidate> kept;
+  for (const Candidate& one : sorted) {
+    const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
+      return better.rotation.angularDistance(one.rotation) < kApart;
+    });
+    if (!near) kept.push_back(one);
+    if (kept.size() == kFollowed) break;
   }
-  return at;
-}
-
-void sortByCost(std::vector<Candidate>& candidates) {
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  return kept;
 }
 
 }  // namespace
 
-Eigen::Matrix3d searchRotation(const std::vector<FoldingLevel>& moving,
-                               const std::vector<FoldingLevel>& target, const Monitor& monitor) {
+std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& moving,
+                                             const std::vector<FoldingLevel>& target,
+                                             const Monitor& monitor) {
   monitor.progress(0, "rotation");
-  std::vector<Candidate> candidates(kRotations + 1);
+  std::vector<Candidate> candidates(kRotations);
   parallelFor(candidates.size(), 16, [&](std::size_t n) {
-    candidates[n].rotation = n == 0 ? Eigen::Quaterniond::Identity()  // often near already
-                                    : spiralRotation(static_cast<int>(n) - 1);
-    candidates[n].cost = costOf(moving[kCoarse], target[kCoarse], candidates[n].rotation);
+    candidates[n].rotation = spiralRotation(static_cast<int>(n));
+    candidates[n].cost = costOf(moving[kLevel], target[kLevel], candidates[n].rotation);
   });
-  sortByCost(candidates);
-  candidates.resize(kFollowed);
-  parallelFor(candidates.size(), 1, [&](std::size_t n) {
-    candidates[n] =
-        descended(moving[kMiddle], target[kMiddle], candidates[n], kFirstStep, kFirstStep / 8);
-  });
-  sortByCost(candidates);
-  const std::size_t fine = std::min<std::size_t>(kFine, target.size() - 1);
-  return descended(moving[fine], target[fine], candidates.front(), kFirstStep / 8, kLastStep)
-      .rotation.toRotationMatrix();
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const Candidate& one : apart(candidates))
+    rotations.push_back(one.rotation.toRotationMatrix());
+  rotations.emplace_back(Eigen::Matrix3d::Identity());
+  return rotations;
 }
 
 }  // namespace explica::sphere

@@ -6,10 +6,11 @@
 
 namespace explica::sphere {
 
-/// Rotation of the moving maps after which they agree best with the target's: the least weighed
-/// mean of squared differences over all rotations.
-[[nodiscard]] Eigen::Matrix3d searchRotation(const std::vector<FoldingLevel>& moving,
-                                             const std::vector<FoldingLevel>& target,
-                                             const Monitor& monitor);
+/// Rotations of the moving maps after which they agree well with the target's, best first: those of
+/// least weighed mean of squared differences among rotations spread evenly over all.  Ends with the
+/// identity: spheres made of heads in the same coordinate system differ little from it.
+[[nodiscard]] std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& moving,
+                                                           const std::vector<FoldingLevel>& target,
+                                                           const Monitor& monitor);
 
 }  // namespace explica::sphere

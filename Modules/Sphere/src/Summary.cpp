@@ -58,7 +58,7 @@ void describe(Results& t, const SphereRegistration& r) {
       .inHead();
   t.number("areal_log2_max", "Change of areas, largest |log2|", "", "",
            areal([](const auto& a) { return a.maxCoeff(); }));
-  t.number("rotation_degrees", "Rotation found first", "degrees", "",
+  t.number("rotation_degrees", "Rotation nearest to the map", "degrees", "",
            Eigen::AngleAxisd(r.rotation).angle() * 180 / kPi);
   t.count("iterations", "Iterations", "Of all levels.", r.iterations);
 }

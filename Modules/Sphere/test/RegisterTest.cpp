@@ -113,6 +113,35 @@ TEST(RegisterSphere, BringsFoldsHomePastTheirNeighbours) {
   EXPECT_LT(angles.second, 1) << "largest " << angles.first;
 }
 
+// Parts of the sphere are twisted against each other by as much as the folds are apart: after the
+// rotation that agrees best one of them lies in the neighbours of its folds.
+TEST(RegisterSphere, DoesNotTrustTheRotationThatAgreesBest) {
+  const TriangleMesh grid = geometry::makeIcosphere(5);
+  const auto foldedLike = [&](const Positions& places) {
+    FoldingSphere folding;
+    folding.sphere = geometry::makeIcosphere(5, 100);
+    const auto x = places.col(0).array(), y = places.col(1).array(), z = places.col(2).array();
+    Eigen::VectorXd narrow(places.rows());  // 30 degrees apart
+    for (Eigen::Index v = 0; v < places.rows(); ++v) {
+      narrow[v] = 2 * std::sin(12 * std::atan2(y[v], x[v])) * std::hypot(x[v], y[v]);
+    }
+    folding.sulc = ((3 * x).sin() + (2 * y + z).cos() + 2 * z * (1 + x)).matrix() + narrow;
+    folding.curvature = ((2 * z + x).cos() + (2 * y - 3 * x).sin()).matrix() + narrow;
+    return folding;
+  };
+  Positions places = grid.positions;
+  for (Eigen::Index v = 0; v < places.rows(); ++v) {
+    const double angle = 15 * kPi / 180 * std::tanh(4 * (places(v, 2) + 0.3));
+    places.row(v) = (Eigen::AngleAxisd(angle, Vector::UnitZ()) * Point(places.row(v))).transpose();
+  }
+  RegisterOptions options;
+  options.level = 5;
+  options.smoothness = 0.5;
+  const auto result = registerSphere(foldedLike(places), foldedLike(grid.positions), options);
+  const auto angles = anglesBetween(result.positions, places);
+  EXPECT_LT(angles.second, 1) << "largest " << angles.first;
+}
+
 TEST(RegisterSphere, MirroredSpheresAgree) {
   const FoldingSphere target = folded();
   FoldingSphere moving = target;

@@ -20,11 +20,16 @@ struct CortexTemplate {
   std::string sulc, curvature;      ///< sulcal depth (mm) and mean curvature (1/mm) at its vertices
   std::string sulcSd, curvatureSd;  ///< their deviations between people; empty: not known
   std::string atlas, white, pial;   ///< of the same vertices; empty: not there
+  std::string cuts;                 ///< medial wall (1) and cuts (2 and on) of flat maps, if there
 };
 
 /// The first of the names that is a file in one of the folders.
 [[nodiscard]] std::optional<std::string> findFile(const std::vector<std::string>& folders,
                                                   const std::vector<std::string>& names);
+
+/// A folder of surfaces and, beside a `surface*` folder of explica run, the `register*` folder of
+/// that hemisphere.
+[[nodiscard]] std::vector<std::string> withRegistration(const std::string& folder);
 
 /// True if the template can be had: Colin27's volumes are installed, or it is another one.
 [[nodiscard]] bool hasTemplate(const std::string& name);

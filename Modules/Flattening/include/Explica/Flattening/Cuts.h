@@ -7,7 +7,10 @@
 #include "Explica/Core/Results.h"
 #include "Explica/Core/Termination.h"
 #include "Explica/Flattening/Opening.h"
+#include "Explica/Flattening/Selection.h"
 
+#include <map>
+#include <string>
 #include <vector>
 
 namespace explica::flattening {
@@ -31,6 +34,7 @@ struct Cut {
   CutPath path;       ///< vertices of the disc, from the rim or an earlier cut inwards
   double length = 0;  ///< mm
   double depth = 0;   ///< mean of the fold depth along it: 1 is a standard deviation inwards
+  std::string name;   ///< of the template's cut that it follows; empty: found
 };
 
 /// Relief cuts, and what they give.
@@ -69,5 +73,27 @@ void describe(Results& t, const CutPlan& plan);
 [[nodiscard]] CutPlan findCuts(const Disc& disc, const Eigen::VectorXd& depth,
                                const CutOptions& options = {}, const Monitor& monitor = {},
                                const CutPlan* resume = nullptr);
+
+/// A template's cut on the sphere.
+struct CutLine {
+  std::string name;
+  Positions points;  ///< N x 3, mm, the inner end last
+};
+
+/// Cuts that are labelled on a template's vertices: key 1 is the medial wall, each further key of
+/// the table a cut from the wall, or from a cut of a smaller key, inwards.
+/// @param sphere  the template's
+/// @throws InvalidInput  a cut that touches neither the wall nor an earlier cut
+[[nodiscard]] std::vector<CutLine> cutLines(const TriangleMesh& sphere, const VertexKeys& keys,
+                                            const std::map<Label, std::string>& names);
+
+/// Cuts of a disc along a template's: each the cheapest way from the rim or an earlier cut to the
+/// vertex nearest to the line's inner end, where a millimetre costs 2^(d/h), d the distance from
+/// the line on the sphere and h the mean edge of the disc there.  A line that has no way left of
+/// its own is left out.
+/// @param places  of the disc's vertices on a sphere in register with the template's, mm
+/// @param depth   of the disc's vertices (foldDepth of the whole surface)
+[[nodiscard]] CutPlan cutsAlong(const Disc& disc, const Positions& places,
+                                const std::vector<CutLine>& lines, const Eigen::VectorXd& depth);
 
 }  // namespace explica::flattening

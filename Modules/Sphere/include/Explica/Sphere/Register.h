@@ -22,7 +22,7 @@ struct RegisterOptions {
   double smoothness = 5;  ///< a of registerSphere()
   double maxAreal = 2;    ///< m of MapWeights
   int level = 6;          ///< of the finest icosphere, 10 * 4^level + 2 vertices
-  bool rotate = true;     ///< search for the rotation first
+  bool rotate = true;     ///< start from rotations, too
 };
 
 template <class Visitor>
@@ -35,7 +35,9 @@ void describe(RegisterOptions& options, Visitor&& visit) {
   visit(
       Field{"level", "", "finest icosphere on which the map is moved: 10 * 4^N + 2 vertices", 3, 7},
       options.level);
-  visit(Field{"rotate", "", "search all rotations for the best one first"}, options.rotate);
+  visit(
+      Field{"rotate", "", "start from rotations among all, not only from the spheres as they are"},
+      options.rotate);
 }
 
 /// Correlation of folding maps over the sphere's area.
@@ -49,7 +51,7 @@ struct SphereRegistration {
   Eigen::VectorXd arealLog2;        ///< V: log2 of the map's areas after over before
   Eigen::VectorXd sulc, curvature;  ///< V: the target's folds where the vertices have come to
   FoldingCorrelation before, after;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< of the moving sphere, found first
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< nearest to the map
   OneToOne rounding;
   int iterations = 0;
   Termination termination = Termination::NotRun;
@@ -57,14 +59,16 @@ struct SphereRegistration {
 
 /// Brings a sphere onto another's by the folds, one to one.
 ///
-/// A rotation is found first, among rotations spread evenly over all [Alexa2022].  Then the
-/// vertices x_i of an icosphere in the target's frame move to places y_i of the moving sphere that
-/// lower
+/// The vertices x_i of an icosphere in the target's frame move to places y_i of the moving sphere
+/// that lower
 ///
 ///     sum_i A_i sum_maps (s(y_i) - t(x_i))^2 / v(x_i)  +  a * energy of MapWeights
 ///
 /// s and t the maps of both, each of mean 0 and variance 1, v the template's variance over its mean
-/// or 1; by Gauss-Newton steps on icospheres from coarse to fine, maps smoothed alike.  Faces keep
+/// or 1; by Gauss-Newton steps on icospheres from coarse to fine, maps smoothed alike.  They start
+/// from the identity and from the rotations, among ones spread evenly over all [Alexa2022], after
+/// which the folds agree best; on each level those of least energy go on.  (The best rotation alone
+/// can be a fold off: how well folds agree is known only once they have moved.)  Faces keep
 /// their sides and areas change by less than `maxAreal` doublings there, so that the map is one to
 /// one.  The moving sphere's vertices follow by its inverse, linear on faces; the few faces that
 /// this turns over, needles over a bend, are mended by makeOneToOne().
