@@ -92,9 +92,15 @@ bool exclude(const Json& one, const Json& other) {
   return false;
 }
 
-/// True if what one needs excludes the other.
+/// True if what one needs excludes the other: an option, or its value.
 bool excludeByNeeds(const Json& command, const Json& one, const Json& other) {
+  const std::string otherName = other["name"];
   for (const Json& name : one["needs"]) {
+    const std::string condition = name, option = condition.substr(0, condition.find('='));
+    if (option != condition && option == otherName) return true;
+    for (const std::string needed : other["needs"]) {
+      if (needed.starts_with(option + "=") && needed != condition) return true;
+    }
     const Json& needed = parameterOf(command, name);
     if (!needed.is_null() && (exclude(needed, other) || exclude(other, needed))) return true;
   }
