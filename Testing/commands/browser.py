@@ -35,9 +35,27 @@ def ask(driver, script):
     return driver.execute_script("const byId = (id) => document.getElementById(id); " + script)
 
 
-def wait_until_ready(driver, page, canvas):
-    """Opens a page and waits until it has drawn a canvas; a minute at most."""
-    driver.get("file://" + page)
+def eventually(condition):
+    """Whether a condition holds within a minute, however slow the machine is."""
     end = time.time() + 60
-    while time.time() < end and ask(driver, "return byId('%s').dataset.ready" % canvas) != "true":
-        time.sleep(0.2)
+    while not condition():
+        if time.time() > end:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+def wait_until_ready(driver, page, canvas):
+    """Opens a page and waits until it has drawn a canvas."""
+    driver.get("file://" + page)
+    eventually(lambda: is_ready(driver, canvas))
+
+
+def is_ready(driver, canvas):
+    return ask(driver, "return byId('%s').dataset.ready" % canvas) == "true"
+
+
+def drawn(driver):
+    """Waits until what was asked for is drawn: pages draw in the next frame."""
+    driver.execute_async_script("const done = arguments[arguments.length - 1];"
+                                "requestAnimationFrame(() => requestAnimationFrame(() => done()));")

@@ -5,24 +5,19 @@ if the page is sound: no console message of level error, no request but the page
 of one colour, and a slider and a map choice that change the picture."""
 import json
 import sys
-import time
 
-from browser import check, faults, start
+from browser import check, drawn, eventually, faults, is_ready, start, wait_until_ready
 
 driver = start(1000, logging=True, drawing=True)
 
 
 def picture():
-    time.sleep(0.7)
+    drawn(driver)
     return driver.execute_script("return document.getElementById('canvas').toDataURL()")
 
 
 try:
-    driver.get("file://" + sys.argv[1])
-    end = time.time() + 60
-    while time.time() < end and not driver.execute_script(
-            "return document.getElementById('canvas').dataset.ready === 'true'"):
-        time.sleep(0.2)
+    wait_until_ready(driver, sys.argv[1], "canvas")
     first = picture()
     colours = driver.execute_script("""
         const from = document.getElementById('canvas'), to = document.createElement('canvas');
@@ -49,23 +44,19 @@ try:
         document.getElementById('reset').click();
         c.dispatchEvent(new PointerEvent('pointermove',
             {clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}));""")
-    time.sleep(1)
+    drawn(driver)
     reading = driver.execute_script("return document.getElementById('under-pointer').textContent")
     check("value under the pointer: " + reading, "vertex" in reading and ":" in reading)
     if driver.execute_script("return document.getElementById('which').options.length") > 1:
         one = picture()
         driver.execute_script("const w = document.getElementById('which'); w.value = '1';"
                               "w.dispatchEvent(new Event('change'));")
-        end = time.time() + 60
-        while time.time() < end and not driver.execute_script(
-                "return document.getElementById('canvas').dataset.ready === 'true'"):
-            time.sleep(0.2)
-        other = picture()
-        check("another patch is another picture", other != one)
+        eventually(lambda: is_ready(driver, "canvas"))
+        check("another patch is another picture", eventually(lambda: picture() != one))
         check("and is still chosen", driver.execute_script("return document.getElementById('which').value") == "1")
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True})
-    time.sleep(0.5)
+    drawn(driver)
     width = driver.execute_script("return document.documentElement.scrollWidth")
     check("a phone's width holds the page (%d pixels)" % width, width <= 390)
     for entry in driver.get_log("browser"):

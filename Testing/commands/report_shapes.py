@@ -4,7 +4,6 @@
 shape by its name, the patch opens on the shape of which it is, and the pointer names what it is on."""
 import functools
 import sys
-import time
 
 import browser
 from browser import check, faults
@@ -14,7 +13,7 @@ ask = functools.partial(browser.ask, driver)
 
 
 def picture():
-    time.sleep(0.7)
+    browser.drawn(driver)
     return ask("return byId('canvas').toDataURL()")
 
 
@@ -43,13 +42,13 @@ try:
     ask("""const c = byId('canvas'), box = c.getBoundingClientRect();
         c.dispatchEvent(new PointerEvent('pointermove',
             {clientX: box.left + box.width / 2, clientY: box.top + box.height / 2}))""")
-    time.sleep(0.7)
+    browser.drawn(driver)
     reading = ask("return byId('under-pointer').textContent")
     check("under the pointer: " + reading, "vertex" in reading and "thickness" in reading)
     slices = ask("return byId('cut-1').toDataURL()")
     ask("byId('canvas').dispatchEvent(new MouseEvent('click'))")
-    time.sleep(0.7)
-    check("a click moves the slices", ask("return byId('cut-1').toDataURL()") != slices)
+    check("a click moves the slices",
+          browser.eventually(lambda: ask("return byId('cut-1').toDataURL()") != slices))
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
 finally:

@@ -4,7 +4,6 @@
 does what it says.  Of a place told by the view in three dimensions, the slices go there."""
 import functools
 import sys
-import time
 
 import browser
 from browser import check, faults
@@ -14,7 +13,7 @@ ask = functools.partial(browser.ask, driver)
 
 
 def pictures():
-    time.sleep(0.4)
+    browser.drawn(driver)
     return ask("return [0, 1, 2].map((n) => byId('cut-' + n).toDataURL())")
 
 
@@ -45,7 +44,7 @@ try:
     changed("brightness", "byId('cut-bright').value = 90; byId('cut-bright').dispatchEvent(new Event('input'))",
             [True, True, True])
     ask("document.dispatchEvent(new CustomEvent('place', {detail: {at: [3, 2, 1], from: 'surface'}}))")
-    time.sleep(0.4)
+    browser.drawn(driver)
     place = [float(word.split("=")[1].split()[0]) for word in ask("return byId('cut-at').textContent").split(",")]
     check("a place of the surface is gone to: %s" % place,
           all(abs(x - y) < 1.01 for x, y in zip(place, (3, 2, 1))))
@@ -62,14 +61,13 @@ try:
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False})
     ask("byId('cut-places').add(new Option('a place of many words '.repeat(5)))")
-    time.sleep(0.5)
+    browser.drawn(driver)
     width = driver.execute_script("return document.documentElement.scrollWidth")
     check("a phone's width holds the page (%d pixels)" % width, width <= 390)
     driver.refresh()
-    time.sleep(1)
-    shown = ask("return [...document.querySelectorAll('figure > details[open]')]"
-                ".map((details) => details.querySelector('#cuts') !== null)")
-    check("of a phone's figures the slices are open, the others folded: %s" % shown, shown == [True])
+    check("of a phone's figures the slices are open, the others folded", browser.eventually(
+        lambda: ask("return [...document.querySelectorAll('figure > details[open]')]"
+                    ".map((details) => details.querySelector('#cuts') !== null)") == [True]))
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
 finally:
