@@ -75,7 +75,7 @@ constexpr Limit kLimits[] = {
      0.01,
      "vessels with contrast agent may be called white matter; look at seg.nii.gz, or give a T1 "
      "without",
-     "measured: 0.0000 to 0.0004 in nine T1s and a simulated head, 0.004 in bert, whose arteries "
+     "measured: 0.0000 to 0.0004 in eight T1s and a simulated head, 0.004 in bert, whose arteries "
      "are bright; 0.017 with vessels simulated 1.3 times as bright as white matter"},
     {"half-head", "the volume of the left half over that of the right one", "", 0.75, 1.33,
      "a part of the head may lie outside of the image",
