@@ -81,6 +81,22 @@ TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
   EXPECT_TRUE(after["flags"][0]["accepted"].get<bool>());
 }
 
+TEST(PlausibilityCommand, VesselsBrighterThanWhiteMatterAreFlagged) {
+  TemporaryFolder folder;
+  Volume<float> image = ballHead(70, 3, {kFluid, kGrey, kWhite});
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto [i, j, k] = image.grid.subscripts(v);
+    if (image[v] != 0 && i % 6 == 0 && j % 6 == 0) image[v] = 1.4 * kWhite;
+  }
+  io::writeVolume(folder / "t1.nii.gz", image);
+  const auto result = segment(folder, "t1.nii.gz");
+  EXPECT_EQ(result.exitCode, 3) << result;
+  EXPECT_NE(result.err.find("contrast agent"), std::string::npos) << result;
+  const auto summary = readJson(folder.path() / "out/summary.json");
+  ASSERT_EQ(summary["flags"].size(), 1u);
+  EXPECT_EQ(summary["flags"][0]["name"], "bright-in-brain");
+}
+
 /// A ball of white matter within grey within fluid, by radii in mm.
 Volume<float> ballLabels(double white, double tissue, double radius, double spacing) {
   Volume<float> labels = ballHead(radius, spacing, {kFluid, kGrey, kWhite});
