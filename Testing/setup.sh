@@ -46,18 +46,25 @@ cmake --preset "${EXPLICA_PRESET:-release}" -DPython_EXECUTABLE=/usr/bin/python3
   cat build/configure.log
   exit 1
 }
-# A line each half minute, with what is left at the pace so far; all else as it comes.
+# A line each half minute, with what is left at the pace so far; all else as it comes.  Not by awk:
+# Debian's (mawk) waits for 4096 bytes.
 status=$(mktemp)
-{ NINJA_STATUS="built %f of %t files in %e s: " cmake --build build --target "$target" || echo $? >"$status"; } | awk '
-  /^built [0-9]+ of / {
-    if ($7 >= 30 * (lines + 1) || $2 == $4) {
-      lines = int($7 / 30)
-      printf "setup: %d of %d files built, about %d min left\n", $2, $4, int($7 * ($4 - $2) / $2 / 60 + 0.99)
-      fflush()
-    }
-    next
-  }
-  { print; fflush() }'
+lines=0
+{ NINJA_STATUS="built %f of %t files in %e s: " cmake --build build --target "$target" || echo $? >"$status"; } |
+  while IFS= read -r line; do
+    case $line in
+      "built "*" of "*)
+        # shellcheck disable=SC2086  # one argument per word is meant
+        set -- $line
+        seconds=${7%.*}
+        if [ "$seconds" -ge $((30 * (lines + 1))) ] || [ "$2" = "$4" ]; then
+          lines=$((seconds / 30))
+          echo "setup: $2 of $4 files built, about $(((seconds * ($4 - $2) / $2 + 59) / 60)) min left"
+        fi
+        ;;
+      *) printf '%s\n' "$line" ;;
+    esac
+  done
 failed=$(cat "$status")
 rm -f "$status"
 [ -z "$failed" ] || exit "$failed"
