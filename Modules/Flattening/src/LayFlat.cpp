@@ -5,7 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Flattening/Coarsening.h"
-#include "Explica/Geometry/StoppableLdlt.h"
+#include "Explica/Geometry/SparseCholesky.h"
 #include "MapSolver.h"
 
 #include <algorithm>
@@ -108,7 +108,7 @@ FlatPositions circleMap(const IntrinsicMesh& mesh, const Loop& rim, double area)
   }
   Eigen::SparseMatrix<double> system(count, count);
   system.setFromTriplets(kept.begin(), kept.end());
-  const geometry::StoppableLdlt solver(system);
+  const geometry::SparseCholesky solver(system);
   flat = solver.solve(right);
   return flat;
 }

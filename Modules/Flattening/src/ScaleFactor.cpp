@@ -3,7 +3,7 @@
 
 #include "ScaleFactor.h"
 
-#include "Explica/Geometry/StoppableLdlt.h"
+#include "Explica/Geometry/SparseCholesky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,13 @@ Eigen::VectorXd scaleFactor(const IntrinsicDisc& disc) {
   for (Eigen::Index v = 0; v < mesh.vertexCount; ++v) {
     if (row[v] >= 0) right[row[v]] = -missing[v];
   }
-  const geometry::StoppableLdlt solver(stiffness);
+  // Cotangents of faces without area are rounded: what is no longer definite becomes so by little.
+  geometry::SparseCholesky solver(stiffness);
+  const double mean = stiffness.diagonal().mean();
+  for (double added = 1e-14 * mean; !solver.isDefinite() && added < mean; added *= 10) {
+    stiffness.diagonal().array() += added;
+    solver.compute(stiffness);
+  }
   const Eigen::VectorXd solved = solver.solve(right);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(mesh.vertexCount);
   for (Eigen::Index v = 0; v < mesh.vertexCount; ++v) {

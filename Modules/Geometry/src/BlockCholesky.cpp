@@ -555,6 +555,7 @@ void BlockCholesky<Size>::solve(Eigen::VectorXd& x) const {
   });
 }
 
+template class BlockCholesky<1>;
 template class BlockCholesky<2>;
 template class BlockCholesky<3>;
 

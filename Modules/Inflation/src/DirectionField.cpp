@@ -17,7 +17,7 @@ DirectionField::DirectionField(const TriangleMesh& mesh, double reach)
     matrix.coeffRef(v, v) += mass[v] > 0 ? mass[v] : 1;  // a vertex of no face keeps 0
   }
   solver_.compute(matrix);
-  if (solver_.info() != Eigen::Success) {
+  if (!solver_.isDefinite()) {
     throw InvalidInput("surface: its faces are too thin to spread directions over");
   }
 }

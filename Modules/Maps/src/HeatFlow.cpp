@@ -6,7 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
-#include "Explica/Geometry/StoppableLdlt.h"
+#include "Explica/Geometry/SparseCholesky.h"
 
 #include <numbers>
 
@@ -32,7 +32,7 @@ TriangleMesh conducting(const TriangleMesh& mesh, const std::vector<bool>& domai
 struct HeatFlow::State {
   Eigen::VectorXd masses;
   Eigen::VectorXd weights;  ///< masses, and 1 where there is none: such a value stays
-  geometry::StoppableLdlt solver;
+  geometry::SparseCholesky solver;
 };
 
 HeatFlow::HeatFlow(const TriangleMesh& mesh, double step, const std::vector<bool>& domain)
@@ -43,7 +43,7 @@ HeatFlow::HeatFlow(const TriangleMesh& mesh, double step, const std::vector<bool
   Eigen::SparseMatrix<double> matrix = kGamma * step * geometry::cotangentLaplacian(part);
   for (Eigen::Index v = 0; v < matrix.rows(); ++v) matrix.coeffRef(v, v) += state_->weights[v];
   state_->solver.compute(matrix);
-  if (state_->solver.info() != Eigen::Success) {
+  if (!state_->solver.isDefinite()) {
     throw InvalidInput("the surface's faces are too degenerate for diffusion along it");
   }
 }

@@ -105,6 +105,7 @@ class BlockCholesky {
   double operations_ = 0;
 };
 
+extern template class BlockCholesky<1>;
 extern template class BlockCholesky<2>;
 extern template class BlockCholesky<3>;
 

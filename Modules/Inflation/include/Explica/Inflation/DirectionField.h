@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
-#include "Explica/Geometry/StoppableLdlt.h"
+#include "Explica/Geometry/SparseCholesky.h"
 
 namespace explica::inflation {
 
@@ -30,7 +30,7 @@ class DirectionField {
  private:
   Faces faces_;
   Eigen::VectorXd areas_;
-  geometry::StoppableLdlt solver_;
+  geometry::SparseCholesky solver_;
 };
 
 }  // namespace explica::inflation
