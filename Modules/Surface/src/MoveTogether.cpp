@@ -19,10 +19,17 @@ class MarkedCells {
  public:
   explicit MarkedCells(const TriangleMesh& mesh) : mesh_(mesh) {
     constexpr double kCells = 128;  // along the longest side: about an edge of a fine surface
-    low_ = mesh.positions.colwise().minCoeff().transpose();
-    const Vector size = mesh.positions.colwise().maxCoeff().transpose() - low_;
-    perMm_ = (kCells - 1) / std::max(size.maxCoeff(), 1e-300);
-    for (int a = 0; a < 3; ++a) count_[a] = static_cast<int>(size[a] * perMm_) + 1;
+    const Point low = mesh.positions.colwise().minCoeff().transpose();
+    const Vector size = mesh.positions.colwise().maxCoeff().transpose() - low;
+    const double perMm = (kCells - 1) / std::max(size.maxCoeff(), 1e-300);
+    for (int a = 0; a < 3; ++a) count_[a] = static_cast<int>(size[a] * perMm) + 1;
+    cells_.resize(static_cast<std::size_t>(mesh.vertexCount()));
+    parallelFor(cells_.size(), 4096, [&](std::size_t v) {
+      for (int a = 0; a < 3; ++a) {
+        const double place = (mesh.positions(static_cast<Eigen::Index>(v), a) - low[a]) * perMm;
+        cells_[v][a] = static_cast<std::uint8_t>(std::min(static_cast<int>(place), count_[a] - 1));
+      }
+    });
     marked_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2], 0);
   }
 
@@ -37,16 +44,17 @@ class MarkedCells {
   }
 
  private:
+  using Cell = std::array<std::uint8_t, 3>;
+
   /// Visits the cells of a face's box until a visit says false; whether none did.
   template <class Visit>
   bool forCells(Eigen::Index face, const Visit& visit) const {
-    std::array<int, 3> first, last;
+    const Cell &p = cells_[mesh_.faces(face, 0)], &q = cells_[mesh_.faces(face, 1)],
+               &r = cells_[mesh_.faces(face, 2)];
+    Cell first, last;
     for (int a = 0; a < 3; ++a) {
-      const double p = mesh_.positions(mesh_.faces(face, 0), a);
-      const double q = mesh_.positions(mesh_.faces(face, 1), a);
-      const double r = mesh_.positions(mesh_.faces(face, 2), a);
-      first[a] = cellAt(std::min({p, q, r}), a);
-      last[a] = cellAt(std::max({p, q, r}), a);
+      first[a] = std::min({p[a], q[a], r[a]});
+      last[a] = std::max({p[a], q[a], r[a]});
     }
     for (int k = first[2]; k <= last[2]; ++k) {
       for (int j = first[1]; j <= last[1]; ++j) {
@@ -59,13 +67,9 @@ class MarkedCells {
     }
     return true;
   }
-  [[nodiscard]] int cellAt(double coordinate, int axis) const {
-    return std::clamp(static_cast<int>((coordinate - low_[axis]) * perMm_), 0, count_[axis] - 1);
-  }
 
   const TriangleMesh& mesh_;
-  Point low_;
-  double perMm_;
+  std::vector<Cell> cells_;  ///< of the vertices
   std::array<int, 3> count_ = {1, 1, 1};
   std::vector<std::uint8_t> marked_;
 };
