@@ -99,7 +99,7 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
   }
   std::vector<Volume<float>> sessions;
   for (const std::string& path : s.sessions) {
-    sessions.push_back(readScalars(context, "SESSION", path, {.dimension = 3}));
+    sessions.push_back(readBrightness(context, "SESSION", path, {.dimension = 3}));
   }
   return sessions;
 }

@@ -134,7 +134,7 @@ void writeTissue(Context& context, const Boxes& boxes,
 /// The image without the empty space around it.
 Volume<float> readImage(Context& context, Judge& judge, const SegmentSettings& s,
                         const io::VolumeReadOptions& reading, Boxes& boxes) {
-  const Volume<float> image = readScalars(context, "T1", s.image, reading);
+  const Volume<float> image = readBrightness(context, "T1", s.image, reading);
   refuseOtherImages(judge, image);
   boxes.push_back(segmentation::VoxelBox::around(image, kMargin));
   return boxes.back().of(image);

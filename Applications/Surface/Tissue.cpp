@@ -85,7 +85,7 @@ SurfaceImages readImages(Context& context, const SurfaceSettings& s) {
   reading.frame.reset();
   const auto read = [&](const char* name, const std::optional<std::string>& file) {
     std::optional<Volume<float>> image;
-    if (file) image = scaled(readScalars(context, name, *file, reading), s.scale);
+    if (file) image = scaled(readBrightness(context, name, *file, reading), s.scale);
     return image;
   };
   images.first = read("image", s.image);

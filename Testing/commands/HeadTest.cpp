@@ -65,6 +65,28 @@ TEST_P(CortexWithDura, IsAsThickAsItIs) {
   EXPECT_NEAR(thickness(images), 2.5, 0.08);
 }
 
+TEST(CortexBesideDura, IsTheSameWhereverBrightnessCountsFrom) {
+  TemporaryFolder folder;
+  auto run = explica({"phantom", "cortex", "--size", "48", "--dura", "1", "--dura-gap", "1",
+                      "--ventricle", "4", "--noise", "0", "--out", folder / "phantom"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  Volume<float> scores = io::readScalars(folder / "phantom/t1.nii.gz").volume;
+  for (float& value : scores.data) value = (value - 60) / 64;
+  io::writeVolume(folder / "scores.nii.gz", scores);
+  const auto madeOf = [&](const std::string& image, const std::string& out) {
+    auto made = explica({"segment", image, "--template", "none", "--accept", "brain-volume",
+                         "--out", folder / (out + "-segment")});
+    EXPECT_EQ(made.exitCode, 0) << made;
+    made = explica({"surface", "--inner-level", folder / (out + "-segment/wm.nii.gz"),
+                    "--grey-share", folder / (out + "-segment/gm.nii.gz"), "--image", image,
+                    "--fluid", "0.3", "--faces", "8000", "--out", folder / out});
+    EXPECT_EQ(made.exitCode, 0) << made;
+    return readJson(folder / (out + "/summary.json"))["thickness_mean"].get<double>();
+  };
+  EXPECT_NEAR(madeOf(folder / "scores.nii.gz", "scores"),
+              madeOf(folder / "phantom/t1.nii.gz", "counts"), 1e-3);
+}
+
 /// What a scanner with turned axes and voxels of that size sees: means over what of the head is in
 /// them, and noise; 0 where their middle is outside.
 Volume<float> seenBy(const Vector& spacing, const Volume<float>& fine) {

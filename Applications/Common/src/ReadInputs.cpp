@@ -7,6 +7,7 @@
 #include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Provenance/Record.h"
+#include "Explica/Segmentation/HeadContrast.h"
 #include "Explica/Segmentation/Plausibility.h"
 
 #include <nlohmann/json.hpp>
@@ -92,6 +93,15 @@ Volume<float> readScalars(Context& context, const std::string& name, const std::
   io::LoadedVolume<float> loaded = io::readScalars(path, options);
   record(context, name, path, loaded.origin);
   return std::move(loaded.volume);
+}
+
+Volume<float> readBrightness(Context& context, const std::string& name, const std::string& path,
+                             const io::VolumeReadOptions& options) {
+  Volume<float> image = readScalars(context, name, path, options);
+  if (const float lift = segmentation::countFromAir(image); lift > 0) {
+    context.info(path + ": air is " + std::to_string(-lift) + ", and is taken as 0");
+  }
+  return image;
 }
 
 Volume<Label> readLabels(Context& context, const std::string& name, const std::string& path,

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/HeadContrast.h"
 
+#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/VoxelSets.h"
+#include "Explica/Segmentation/Plausibility.h"
 
 #include <Eigen/Cholesky>
 
@@ -117,6 +119,17 @@ HeadContrast measureContrast(const Volume<float>& image) {
                                     [&](float value) { return value > kBright * median; });
   found.brightShare = static_cast<double>(bright) / static_cast<double>(deep.size());
   return found;
+}
+
+float countFromAir(Volume<float>& image) {
+  constexpr double kDarkest = 0.01;  // air is more than that, a resampling's undershoots are less
+  if (std::all_of(image.data.begin(), image.data.end(), [](float value) { return value >= 0; }) ||
+      judge("hounsfield", airInHounsfieldUnits(image), {})) {
+    return 0;
+  }
+  const float lift = -std::min(0.0f, quantileOf(image.data, kDarkest));
+  for (float& value : image.data) value = std::max(0.0f, value + lift);
+  return lift;
 }
 
 }  // namespace explica::segmentation

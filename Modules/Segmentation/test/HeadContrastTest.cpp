@@ -78,5 +78,21 @@ TEST(HeadContrast, OfNothingIsNothing) {
   EXPECT_EQ(found.spread, 0);
 }
 
+TEST(CountFromAir, IsWhatTheDarkestHundredthIsButInACt) {
+  Grid grid;
+  grid.size = {10, 10, 10};
+  Volume<float> image(grid, -0.75f);
+  for (std::size_t v = 0; v < 300; ++v) image[v] = 0.01f * static_cast<float>(v);
+  image[999] = -2;  // an undershoot
+  EXPECT_EQ(countFromAir(image), 0.75f);
+  EXPECT_EQ(image[998], 0);
+  EXPECT_EQ(image[999], 0);
+  EXPECT_FLOAT_EQ(image[100], 1.75f);
+  EXPECT_EQ(countFromAir(image), 0);
+  Volume<float> ct(grid, -1000.0f);
+  EXPECT_EQ(countFromAir(ct), 0);
+  EXPECT_EQ(ct[0], -1000);
+}
+
 }  // namespace
 }  // namespace explica::segmentation

@@ -16,6 +16,10 @@ namespace explica::app {
 [[nodiscard]] Volume<float> readScalars(Context& context, const std::string& name,
                                         const std::string& path,
                                         const io::VolumeReadOptions& options);
+/// As readScalars, for an image of a head: its brightness counts from that of air.
+[[nodiscard]] Volume<float> readBrightness(Context& context, const std::string& name,
+                                           const std::string& path,
+                                           const io::VolumeReadOptions& options);
 [[nodiscard]] Volume<Label> readLabels(Context& context, const std::string& name,
                                        const std::string& path,
                                        const io::VolumeReadOptions& options);

@@ -21,4 +21,9 @@ struct HeadContrast {
 /// all 0 but `thickest` where nothing lies deep.
 [[nodiscard]] HeadContrast measureContrast(const Volume<float>& image);
 
+/// Brightness counts from that of air: where an image's darkest hundredth is below 0, as in one
+/// scaled to mean 0 and deviation 1, it becomes 0, and so does what is darker.  A CT stays.
+/// @return what was added
+float countFromAir(Volume<float>& image);
+
 }  // namespace explica::segmentation
