@@ -46,6 +46,7 @@ void judgeTissue(Judge& judge, const Volume<float>& image,
   judge.flag("brain-volume", volume / std::min(1.0, brainShare));
   judge.flag("grey-share", tissue.classes[1].share);
   judge.flag("white-share", tissue.classes[2].share);
+  judge.flag("noise", segmentation::noiseOfContrast(tissue));
   judge.flag("bright-in-brain", segmentation::brighterThanWhite(image, tissue));
 }
 

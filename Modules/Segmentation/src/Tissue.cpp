@@ -351,6 +351,22 @@ struct Moments {
   }
 };
 
+/// Deviation of the noise, by the median of second differences along the axes: borders are few.
+double noiseOf(const Brain& brain) {
+  constexpr double kNormal = 0.6745;  // median of a normal variable's size, of its deviation
+  std::vector<float> bends;
+  for (std::size_t b = 0; b < brain.size(); ++b) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t before = brain.neighbours[b][2 * axis];
+      const std::int32_t after = brain.neighbours[b][2 * axis + 1];
+      if (before < 0 || after < 0) continue;
+      bends.push_back(
+          std::abs(brain.intensity[before] - 2 * brain.intensity[b] + brain.intensity[after]));
+    }
+  }
+  return bends.empty() ? 0 : upperMedian(std::move(bends)) / (kNormal * std::sqrt(6.0));
+}
+
 Mixture maximise(const Brain& brain, const std::vector<float>& corrected,
                  const std::vector<Posterior>& posterior) {
   const Moments sums =
@@ -428,6 +444,7 @@ class Classifier {
       for (std::size_t b = 0; b < brain_.size(); ++b) brain_.intensity[b] /= shading_[b];
     }
     markRim(grid_, brain_);
+    noise_ = noiseOf(brain_);
     mixture_ = firstGuess(brain_);
     const Vector spacing = grid_.spacing;
     for (int n = 0; n < 6; ++n) {
@@ -507,6 +524,7 @@ class Classifier {
   /// @param dark  voxels that are fluid without being looked at
   void write(const std::vector<std::size_t>& dark, TissueSegmentation& result) const {
     result.deepFluid = deepFluid();
+    result.noise = noise_;
     for (int k = 0; k < kClasses; ++k) {
       result.classes[k] = {mixture_.mean[k], mixture_.deviation[k], 0};
     }
@@ -547,6 +565,7 @@ class Classifier {
   Brain brain_;
   std::array<float, 6> weights_{};
   std::vector<float> shading_, field_, corrected_;
+  double noise_ = 0;  ///< deviation
   Mixture mixture_;
   std::vector<Posterior> posterior_;
   std::vector<Shares> shares_;

@@ -4,6 +4,7 @@
 
 #include "../src/BorderLevels.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Segmentation/Plausibility.h"
 
 #include <gtest/gtest.h>
 
@@ -103,6 +104,14 @@ TEST(TissueSegmentation, WhiteMattersBorderStaysOutOfItsNoise) {
       grey += found.labels[v] == kGrey;
     }
     EXPECT_LT(static_cast<double>(grey), 0.03 * static_cast<double>(deep)) << spacing.transpose();
+  }
+}
+
+TEST(TissueSegmentation, TellsTheNoise) {
+  for (const double noise : {3.0, 12.0}) {
+    const TissueSegmentation found = segmentTissue(makePhantom(noise, 0.1).image);
+    EXPECT_NEAR(found.noise, noise, 0.15 * noise);
+    EXPECT_EQ(judge("noise", noiseOfContrast(found), {}).has_value(), noise > 10);
   }
 }
 

@@ -76,6 +76,9 @@ struct Flag {
 /// @return NaN if grey matter touches neither
 [[nodiscard]] double greyAtMaskEdge(const Volume<Label>& tissues);
 
+/// The noise's deviation over the difference of white and grey matter's means.
+[[nodiscard]] double noiseOfContrast(const TissueSegmentation& tissue);
+
 /// Share of the brain that is a fifth brighter than white matter, the brightest tissue of a T1:
 /// arteries by inflow, or vessels and membranes with contrast agent.
 /// @param intensity  the image that was segmented, on the grid of the tissues

@@ -59,6 +59,7 @@ struct TissueSegmentation {
   std::array<TissueClass, 3> classes;
   double deepFluid = kNaN;  ///< bias-corrected intensity of fluid far from other tissue, as in
                             ///< ventricles; the class's mean where there is none
+  double noise = kNaN;      ///< its standard deviation, where brightness is even
   std::int64_t brainVoxels = 0;
   Termination termination = Termination::NotRun;
   int iterations = 0;
