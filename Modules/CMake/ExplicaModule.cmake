@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 # A module is a folder with include/Explica/<Name>, src, test, benchmark and one call of
-# explica_add_module: its purpose, its dependencies and its files, each said once.
+# explica_add_module: its purpose, its dependencies and its sources, each said once.  Every file of
+# include/Explica/<Name> is a public header: installed, and compiled alone by `check_headers`.
 
 # explica_add_module(<Name>
 #   PURPOSE "one sentence"
 #   COMPILE_QUICKLY             nothing in it is worth the compiler's full effort
-#   HEADERS include/...         public headers, installed, each compiled alone by `check_headers`
 #   SOURCES src/...             compiled into the static library Explica::<Name>
 #   PUBLIC  target...           links that a public header needs
 #   PRIVATE target...           all other links
@@ -18,17 +18,18 @@
 #   TEST_LINKS target...)       extra links of tests and benchmarks
 function(explica_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY" "PURPOSE"
-    "HEADERS;SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
+    "SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_PURPOSE OR NOT arg_SOURCES)
     message(FATAL_ERROR "explica_add_module(${name}): PURPOSE and SOURCES are needed; "
       "not understood: '${arg_UNPARSED_ARGUMENTS}'")
   endif()
 
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} include/Explica/${name}/*.h)
   set(target Explica${name})
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(Explica::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_HEADERS})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   explica_set_flags(${target})
@@ -57,7 +58,7 @@ function(explica_add_module name)
 
   # Every public header must compile alone.
   set(header_sources "")
-  foreach(header IN LISTS arg_HEADERS)
+  foreach(header IN LISTS headers)
     string(REGEX REPLACE "^include/" "" path "${header}")
     string(MAKE_C_IDENTIFIER "${path}" id)
     set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/${id}.cpp")
