@@ -8,6 +8,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/Selection.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PatchFile.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -42,7 +43,7 @@ std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s
                                       const TriangleMesh& mesh) {
   const auto all = everyFace(mesh.faces);
   if (*s.cuts == kAutomatic) {
-    const bool closed = flattening::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
+    const bool closed = geometry::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
     if (!s.labels.empty() || !closed) return all;
     return flattening::facesWithoutWall(mesh, cortexOf(context, s.surface, mesh, s.cortex));
   }
