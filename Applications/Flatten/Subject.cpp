@@ -19,7 +19,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace explica::app {
 namespace {
@@ -41,7 +40,7 @@ std::optional<std::filesystem::path> recordedOriginal(const std::filesystem::pat
 
 std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s,
                                       const TriangleMesh& mesh) {
-  const auto all = everyFace(mesh.faces);
+  const auto all = mesh.allFaces();
   if (*s.cuts == kAutomatic) {
     const bool closed = geometry::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
     if (!s.labels.empty() || !closed) return all;
@@ -69,12 +68,6 @@ std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s
 
 }  // namespace
 
-std::vector<std::int32_t> everyFace(const Faces& faces) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(faces.rows()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std::string& name) {
   if (a.vertexCount() == b.vertexCount()) return;
   throw InvalidInput("'" + name + "': has " + std::to_string(a.vertexCount()) +
@@ -95,7 +88,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     mesh.positions = reference.mesh.positions;
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
-  subject.faces = everyFace(mesh.faces);
+  subject.faces = mesh.allFaces();
   if (s.cuts == kOfTemplate) {
     subject.cuts = readTemplateCuts(context, s, mesh);
     subject.faces = flattening::facesWithoutWall(mesh, subject.cuts->cortex);
