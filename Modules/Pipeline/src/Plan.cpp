@@ -50,20 +50,12 @@ enum class Naming {
   Unknown
 };
 
-const char* meaningOf(Naming naming) {
-  switch (naming) {
-    case Naming::FreeSurfer:
-      return "FreeSurfer's labels";
-    case Naming::Ribbon:
-      return "FreeSurfer's ribbon";
-    case Naming::ThreeClass:
-      return "1 fluid, 2 grey, 3 white";
-    case Naming::BidsClasses:
-      return "1 grey, 2 white, 3 fluid";
-    case Naming::Unknown:
-      return "names not known";
-  }
-  return "";
+constexpr auto enumWords(Naming) {
+  return std::to_array<EnumWord<Naming>>({{Naming::FreeSurfer, "FreeSurfer's labels"},
+                                          {Naming::Ribbon, "FreeSurfer's ribbon"},
+                                          {Naming::ThreeClass, "1 fluid, 2 grey, 3 white"},
+                                          {Naming::BidsClasses, "1 grey, 2 white, 3 fluid"},
+                                          {Naming::Unknown, "names not known"}});
 }
 
 /// The class of 1, 2, 3 that touches both others most: grey matter lies between the two.
@@ -251,7 +243,7 @@ class Planner {
       // One slice has a thickness, but no surfaces.
       const bool solid = wanted(options_, RunStep::Surface) || wanted(options_, RunStep::Unfold);
       labels_ = nameLabels(*files_.labels, solid ? std::optional(3) : std::nullopt);
-      use("labels", *files_.labels, meaningOf(labels_.naming));
+      use("labels", *files_.labels, std::string(nameOf(labels_.naming)));
     }
     const bool given = surfaces().white.has_value();
     if (!given && !files_.labels && !files_.t1) {
