@@ -61,20 +61,10 @@ constexpr auto enumWords(Naming) {
 /// The class of 1, 2, 3 that touches both others most: grey matter lies between the two.
 int middleClass(const Volume<Label>& labels) {
   std::array<std::array<std::int64_t, 4>, 4> contacts{};
-  const auto& n = labels.grid.size;
-  const auto touch = [&](Label a, Label b) {
+  forContacts(labels, [&](Label a, Label b) {
     if (a == b || a < 1 || b < 1 || a > 3 || b > 3) return;
     ++contacts[std::min(a, b)][std::max(a, b)];
-  };
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i + 1 < n[0]; ++i) {
-        touch(labels(i, j, k), labels(i + 1, j, k));
-        if (j + 1 < n[1]) touch(labels(i, j, k), labels(i, j + 1, k));
-        if (k + 1 < n[2]) touch(labels(i, j, k), labels(i, j, k + 1));
-      }
-    }
-  }
+  });
   // The pair that touches least leaves the class between.
   const auto least = std::min({contacts[1][2], contacts[1][3], contacts[2][3]});
   if (least == contacts[1][3]) return 2;

@@ -119,24 +119,13 @@ std::string sentenceOf(const Limit& limit, double value) {
 
 template <class T>
 double shareOfEqualNeighbours(const Volume<T>& volume) {
-  const auto& n = volume.grid.size;
   std::int64_t pairs = 0;
   std::int64_t equal = 0;
-  const auto compare = [&](T a, T b) {
+  forContacts(volume, [&](T a, T b) {
     if (a == T{0} || b == T{0}) return;
     ++pairs;
     if (a == b) ++equal;
-  };
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        const T here = volume(i, j, k);
-        if (i + 1 < n[0]) compare(here, volume(i + 1, j, k));
-        if (j + 1 < n[1]) compare(here, volume(i, j + 1, k));
-        if (k + 1 < n[2]) compare(here, volume(i, j, k + 1));
-      }
-    }
-  }
+  });
   return pairs == 0 ? 0 : static_cast<double>(equal) / static_cast<double>(pairs);
 }
 
@@ -205,12 +194,9 @@ double greyAtMaskEdge(const Volume<Label>& tissues) {
   double outside = 0, fluid = 0;  // mm^2 of voxel faces
   for (std::size_t v = 0; v < tissues.size(); ++v) {
     if (tissues[v] != kGrey) continue;
-    const auto at = grid.subscripts(v);
+    const auto neighbours = grid.neighbours(v);
     for (int d = 0; d < 6; ++d) {
-      auto next = at;
-      next[d / 2] += d % 2 == 0 ? -1 : 1;
-      const bool inside = grid.contains(next[0], next[1], next[2]);
-      const Label other = inside ? tissues(next[0], next[1], next[2]) : Label{0};
+      const Label other = neighbours[d] < 0 ? Label{0} : tissues[neighbours[d]];
       const double area = grid.voxelVolume() / grid.spacing[d / 2];
       if (other == 0) outside += area;
       if (other == kCsf) fluid += area;
