@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Plausibility.h"
 
-#include "Explica/Core/VoxelSets.h"
-
 #include "Explica/Core/Runs.h"
+#include "Explica/Core/Text.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace explica::segmentation {
@@ -94,12 +93,8 @@ constexpr Limit kLimits[] = {
 };
 
 std::string shortNumber(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  if (std::abs(value) >= 1000 && std::isfinite(value)) {
-    std::snprintf(text.data(), text.size(), "%.0f", value);
-  }
-  return text.data();
+  const bool large = std::abs(value) >= 1000 && std::isfinite(value);
+  return printed(large ? "%.0f" : "%.3g", value);
 }
 
 std::string rangeOf(const Limit& limit) {
