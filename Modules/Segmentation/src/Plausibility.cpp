@@ -24,13 +24,11 @@ constexpr Limit kLimits[] = {
      "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
     {"thick-slices", "the longest edge of a voxel", "mm", 0, 5,
      "the image looks like a stack of thick slices, as of a heart; give a T1 of a head in voxels "
-     "of "
-     "about 1 mm",
+     "of about 1 mm",
      "cortex is 2.5 mm thick; stacks of hearts have 6 to 10 mm"},
     {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.2,
      "the fluid is no darker than the rest, so the image looks like a T2 or a proton density "
-     "image; "
-     "give the T1 of the same person",
+     "image; give the T1 of the same person",
      "measured: three brains and eleven simulated heads with fields to 40 % -0.65 to 0.01; proton "
      "density images simulated from two label maps 0.13 to 0.34, of which some pass, T2s 0.62 to "
      "0.68"},
@@ -42,8 +40,7 @@ constexpr Limit kLimits[] = {
      "this does not look like a T1-weighted brain, whose white matter is bright and deep and whose "
      "fluid is dark and outside",
      "a T1 without fluid at its rim, stripped along the folds, has 3, bert 26; below 1 bright "
-     "tissue "
-     "lies outside"},
+     "tissue lies outside"},
     {"registration", "the agreement with the template", "", 0.6, 1,
      "the template did not reach the head; look at the outlines in the report, or give --atlas and "
      "--mask",
@@ -51,8 +48,7 @@ constexpr Limit kLimits[] = {
      "(Modules/Registration/README.md)"},
     {"stretch", "the template's longest over its shortest stretch onto the head", "", 1, 1.5,
      "a part of the head may be missing, over which the template was squeezed; look at the "
-     "outlines "
-     "in the report, or give --atlas",
+     "outlines in the report, or give --atlas",
      "breadth over length of heads is 0.7 to 0.9; measured: heads 1.00 to 1.20, half a brain 1.92 "
      "(Modules/Registration/README.md)"},
     {"brain-border", "the share of the brain's border beyond which tissue goes on", "", 0, 0.1,

@@ -105,14 +105,13 @@ std::string ignoredText() {
 constexpr const char* kReadMe =
     "# Cortical surfaces, thickness and unfolded patches\n\n"
     "Made by Explica (`explica bids`). `sub-XX.html` leads to the reports on a person, "
-    "`index.html` "
-    "(after the group level) to those on all. In `sub-XX/anat`: tissues and brain mask of the T1; "
-    "of each hemisphere white, middle and pial surface, thickness, sulcal depth, curvature and "
-    "areas at their vertices, and the same at the vertices of a template; an unfolded patch. Each "
-    "file has a sidecar with its sources, unit and SHA-256. `descriptions.tsv` says what each "
-    "`desc-` means. `runs` holds every run with its records. Surfaces and maps have names as "
-    "sMRIPrep's, which the BIDS schema does not contain yet: `.bidsignore` lists these kinds of "
-    "file.\n";
+    "`index.html` (after the group level) to those on all. In `sub-XX/anat`: tissues and brain "
+    "mask of the T1; of each hemisphere white, middle and pial surface, thickness, sulcal depth, "
+    "curvature and areas at their vertices, and the same at the vertices of a template; an "
+    "unfolded patch. Each file has a sidecar with its sources, unit and SHA-256. "
+    "`descriptions.tsv` says what each `desc-` means. `runs` holds every run with its records. "
+    "Surfaces and maps have names as sMRIPrep's, which the BIDS schema does not contain yet: "
+    "`.bidsignore` lists these kinds of file.\n";
 
 /// The fixed ones, and maps on the template: "thickness_space-X_den-Y.shape.gii" becomes
 /// "_space-X_den-Y_thickness.shape.gii".
