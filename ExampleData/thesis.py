@@ -4,12 +4,10 @@
 
 import argparse
 import base64
-import gzip
 import html
 import json
 import math
 import shutil
-import struct
 import subprocess
 import sys
 import time
@@ -170,8 +168,8 @@ class Page:
         self.body.append(f"<div class=scroll><table><tr>{cells}</tr>{lines}</table></div>")
 
     def number(self, key, what, thesis, ours, shown, where):
-        """A number beside the thesis's; `ours` is what a test bounds."""
-        self.numbers.append({"key": key, "what": what, "thesis": thesis, "ours": ours, "shown": shown,
+        """A number beside the thesis's; `ours` is what a test bounds, `shown` its format or a text."""
+        self.numbers.append({"key": key, "what": what, "thesis": thesis, "ours": ours, "shown": shown.format(ours),
                              "figure": where})
 
     def write(self, out, seconds):
@@ -213,20 +211,9 @@ the page says so. {seconds:.0f} seconds for all of it.</p>
 
 def write_labels(path, labels, spacing):
     """labels[j, i] as a NIfTI image of one slice."""
-    rows, columns = labels.shape
-    header = bytearray(348)
-    struct.pack_into("<i", header, 0, 348)
-    struct.pack_into("<8h", header, 40, 3, columns, rows, 1, 1, 1, 1, 1)
-    struct.pack_into("<2h", header, 70, 2, 8)
-    struct.pack_into("<8f", header, 76, 1, spacing, spacing, 1, 0, 0, 0, 0)
-    struct.pack_into("<f", header, 108, 352)
-    header[123] = 2
-    struct.pack_into("<2h", header, 252, 0, 1)
-    for row, values in enumerate(((spacing, 0, 0, 0), (0, spacing, 0, 0), (0, 0, 1, 0))):
-        struct.pack_into("<4f", header, 280 + 16 * row, *values)
-    header[344:348] = b"n+1\0"
-    with gzip.open(path, "wb") as file:
-        file.write(bytes(header) + b"\0" * 4 + labels.astype(numpy.uint8).tobytes())
+    image = nibabel.Nifti1Image(labels.T[..., None].astype(numpy.uint8), numpy.diag([spacing, spacing, 1, 1]))
+    image.header.set_xyzt_units("mm")
+    nibabel.save(image, path)
 
 
 def ellipse_and_circle(path):
@@ -383,11 +370,9 @@ def appendix_a(work, page):
     page.table(["method", "λ, mm", "boundary points, mm", "thickness, mm", "ms", "followed"], rows)
     lagrangian = pure["lagrangian"]["points"]
     page.number("appendix_a_dial", "appendix A: error at λ = ∞ over that at 0.2 mm", "λ controls the accuracy",
-                literal[math.inf]["points"] / literal[0.2]["points"],
-                f"{literal[math.inf]['points'] / literal[0.2]['points']:.1f}", "3.3")
+                literal[math.inf]["points"] / literal[0.2]["points"], "{:.1f}", "3.3")
     page.number("hybrid_worst", "ours: largest error over λ, relative to the Lagrangian method", "not reported",
-                max(r["points"] for r in ours.values()) / lagrangian,
-                f"{max(r['points'] for r in ours.values()) / lagrangian:.2f}", "3.3")
+                max(r["points"] for r in ours.values()) / lagrangian, "{:.2f}", "3.3")
 
 
 def chapter_3_shapes(work, page):
@@ -408,8 +393,7 @@ def chapter_3_shapes(work, page):
                               f"half a voxel is {fit['voxel'] / 2:.2f} mm. ",
                     *views, work.picture(f"{name}-target.png", surface, *look), command=work.commands[name])
         page.number(f"fit_{name}", f"largest distance of the fit from its target, in voxels (figure {number})",
-                    "not reported", fit["distance_max"] / fit["voxel"], f"{fit['distance_max'] / fit['voxel']:.2f}",
-                    number)
+                    "not reported", fit["distance_max"] / fit["voxel"], "{:.2f}", number)
     coefficients = [work.path(n) / "coefficients.json" for n in ("cube", "pear")]
     steps = [k / 8 for k in range(9)]
     series = [work.run(f"series{k}", "embed", *coefficients, "--combine", f"{1 - share},{share}", "--cells", 56)
@@ -422,8 +406,8 @@ def chapter_3_shapes(work, page):
     page.figure(["3.7"], "Convex combinations of the two, from the first to the second. ", *views,
                 command=work.commands["series4"])
     page.number("series_margin", "least distance of boundary values from 1/2 over the series: above 0 every "
-                                 "combination is one closed surface", "one surface",
-                min(s["boundary_margin"] for s in series), f"{min(s['boundary_margin'] for s in series):.3f}", "3.7")
+                "combination is one closed surface", "one surface", min(s["boundary_margin"] for s in series), "{:.3f}",
+                "3.7")
     for a, b in ((18, 22), (15, 25)):
         for r in (a, b):
             write_curve(work.path(f"circle{r}.csv"), lambda t, r=r: r + 0 * t)
@@ -458,10 +442,10 @@ def definitions_4(work, page, p34):
     page.figure(["4.12"], "The flux of a point: the unit ray from P times the inward unit normal. ", svg)
     page.number("points_4.11", "flux of the seen point g less that of the seen point c", "greater",
                 values["g"][0] - values["c"][0], f"{values['g'][0]:.2f} and {values['c'][0]:.2f}", "4.11")
-    page.number("hidden_4.11", "flux of the hidden point e, which faces P", "positive", values["e"][0],
-                f"{values['e'][0]:.2f}", "4.11")
-    page.number("away_4.11", "flux of the hidden point d, which faces away", "negative", values["d"][0],
-                f"{values['d'][0]:.2f}", "4.11")
+    page.number("hidden_4.11", "flux of the hidden point e, which faces P", "positive", values["e"][0], "{:.2f}",
+                "4.11")
+    page.number("away_4.11", "flux of the hidden point d, which faces away", "negative", values["d"][0], "{:.2f}",
+                "4.11")
 
 
 def edges_and_rays(work, page):
@@ -480,10 +464,10 @@ def edges_and_rays(work, page):
     page.figure(["4.16"], f"Two edges of the same length: the flux is {totals[0]:.2f} where rays meet it at right angles "
                           f"(a) and {totals[1]:.2f} where they come at a slant (b). ", *pictures,
                 command=work.commands["edge-slanted"])
-    page.number("edge_flux", "flux of an edge: closed form (4.11) less quadrature, px", "closed form", apart,
-                f"{apart:.1e}", "4.16")
+    page.number("edge_flux", "flux of an edge: closed form (4.11) less quadrature, px", "closed form", apart, "{:.1e}",
+                "4.16")
     page.number("edge_gain", "flux of the edge at right angles over that at a slant", "greater", totals[0] / totals[1],
-                f"{totals[0] / totals[1]:.2f}", "4.16")
+                "{:.2f}", "4.16")
 
 
 def chapter_4(work, page):
@@ -525,7 +509,7 @@ def chapter_4(work, page):
     page.number("area_kept_4.7", "area that the flow of (4.7) keeps of a lobed closed surface", "does not unfold",
                 kept["occlusion"], f"{100 * kept['occlusion']:.0f} %", "4.9")
     page.number("occlusion_inflated", "what hides itself (4.7) after our inflation, share of the start", "not reported",
-                hides[1] / hides[0], f"{hides[1] / hides[0]:.2g}", "4.9")
+                hides[1] / hides[0], "{:.2g}", "4.9")
 
     page.section("4.2 Unfolding of polygons")
     p34 = work.run("p34", "polygon", "--phantom", "polygon34")
@@ -537,7 +521,7 @@ def chapter_4(work, page):
     page.number("region_seen_19", "region between the extremities of the view, edges (19 are unfolded below)",
                 "automatic, out of scope", facing["p19"], f"{facing['p19']} of {len(polygon)}", "4.11")
     page.number("region_seen_34", "the same of the polygon whose 34 edges are unfolded below",
-                "automatic, out of scope", facing["p34"], f"{facing['p34']}", "4.11")
+                "automatic, out of scope", facing["p34"], "{}", "4.11")
     page.figure(["4.13", "4.15", "4.17"],
                 f"The region of 19 edges from its viewpoint, by our implicit steps: the colour of an edge is its flux. ",
                 work.path("p19") / "evolution.svg", command=work.commands["p19"], wide=True)
@@ -554,14 +538,12 @@ def chapter_4(work, page):
                [[f"{n}, {when}", f"{r['visibility_' + when]:.3f}", f"{r['seen_' + when]:.3f}",
                  f"{r['real_visibility_' + when]:.3f}"]
                 for n, r in (("19 edges", p19), ("34 edges", p34)) for when in ("initial", "final")])
-    page.number("flux_40", "region of figure 4.14: average visibility", "0.4", half["visibility_final"],
-                f"{half['visibility_final']:.3f}", "4.14")
+    page.number("flux_40", "region of figure 4.14: average visibility", "0.4", half["visibility_final"], "{:.3f}",
+                "4.14")
     page.number("real_40", "the same: seen times cosine less the flux", "a good estimate",
-                half["real_visibility_final"] - half["visibility_final"],
-                f"{half['real_visibility_final'] - half['visibility_final']:+.3f}", "4.14")
+                half["real_visibility_final"] - half["visibility_final"], "{:+.3f}", "4.14")
     page.number("real_19", "19 edges: real visibility less its estimate by the flux, at the start", "a good estimate",
-                p19["real_visibility_initial"] - p19["visibility_initial"],
-                f"{p19['real_visibility_initial'] - p19['visibility_initial']:+.3f}", "4.14")
+                p19["real_visibility_initial"] - p19["visibility_initial"], "{:+.3f}", "4.14")
     edges_and_rays(work, page)
     page.figure(["4.18"],
                 "The region of 34 edges by the thesis's explicit flow (4.20), the knot energy as the only guard, "
@@ -591,14 +573,13 @@ def chapter_4(work, page):
             ("34", 34, p34, t34, ("0.17", "0.69", "723.70 to 727.60 px", "40 s, 36 s for the topology"))):
         where = "4.17" if key == "19" else "4.18"
         page.number(f"visibility_initial_{key}", f"{edges} edges: initial average visibility", thesis[0],
-                    run["visibility_initial"], f"{run['visibility_initial']:.3f}", where)
+                    run["visibility_initial"], "{:.3f}", where)
         page.number(f"variance_initial_{key}", f"{edges} edges: initial variance of the flux", thesis[1],
-                    run["flux_variance_initial"], f"{run['flux_variance_initial']:.3f}", where)
+                    run["flux_variance_initial"], "{:.3f}", where)
         page.number(f"visibility_final_{key}", f"{edges} edges: final average visibility", "almost 1",
-                    run["visibility_final"], f"{run['visibility_final']:.4f}", where)
+                    run["visibility_final"], "{:.4f}", where)
         page.number(f"variance_final_{key}", f"{edges} edges: final variance of the flux",
-                    "0" if key == "19" else "almost 0", run["flux_variance_final"], f"{run['flux_variance_final']:.1e}",
-                    where)
+                    "0" if key == "19" else "almost 0", run["flux_variance_final"], "{:.1e}", where)
         page.number(f"length_{key}", f"{edges} edges: length kept by ours (relative change)", thesis[2],
                     abs(run["length_final"] / run["length_initial"] - 1),
                     f"{run['length_initial']:.2f} to {run['length_final']:.2f} px", where)
@@ -614,17 +595,16 @@ def chapter_4(work, page):
                 "723.70 to 205.41 px", collapse["length_final"],
                 f"{collapse['length_initial']:.2f} to {collapse['length_final']:.2f} px", "4.19")
     page.number("edges_collapse", "the same: vertices of the region", "34 to 13", 34 - collapse["vertices_merged"],
-                f"34 to {34 - collapse['vertices_merged']}", "4.19")
+                "34 to {}", "4.19")
     page.number("visibility_collapse", "the same: average visibility", "0.17 to almost 1",
                 collapse["visibility_final"],
                 f"{collapse['visibility_initial']:.2f} to {collapse['visibility_final']:.3f}", "4.19")
     coarse = work.run("crossing-coarse", "polygon", "--phantom", "polygon34", "--method", "thesis", "--no-topology",
                       "--explicit-step", 1)
     page.number("first_crossing", "34 edges without topology preservation: iterations to the first crossing, at steps "
-                "of a tenth of an edge", "“after a few iterations”", crossing["first_crossing"],
-                f"{crossing['first_crossing']}", "4.20")
+                "of a tenth of an edge", "“after a few iterations”", crossing["first_crossing"], "{}", "4.20")
     page.number("first_crossing_coarse", "the same at steps of an edge", "drawn after 10 and 100",
-                coarse["first_crossing"], f"{coarse['first_crossing']}", "4.20")
+                coarse["first_crossing"], "{}", "4.20")
 
 
 def frames_of(folder):
@@ -693,7 +673,7 @@ def definitions_5(work, page):
     page.figure(["5.23"], "The merging algorithm's tree of nine faces, and what is left of it for faces 1, 4 and 6 (grey): "
                           "neighbours (orange) exactly, then recursion from the green nodes. The same tree and the "
                           "same nodes are pinned in the software's test “MergingTree”. ", *drawings)
-    page.number("tree_nodes", "nodes of the tree of nine faces", "16", max(tree.centre), f"{max(tree.centre)}", "5.23")
+    page.number("tree_nodes", "nodes of the tree of nine faces", "16", max(tree.centre), "{}", "5.23")
     page.number("tree_three", "children of node 11", "3 (faces 3 to 5)", len(tree.children[11]),
                 ", ".join(map(str, tree.children[11])), "5.23")
     page.number("tree_start", "face 1: node at which the recursion begins", "15", starts[0][0],
@@ -712,12 +692,12 @@ def chapter_5_folds(work, page):
                 f"{ours['visibility_final']:.4f} and {ours['seen_final']:.3f}, areas kept to "
                 f"{100 * ours['area_error_mean']:.2f} %, no crossing. ", *pictures,
                 command=work.commands["folds-open"])
-    page.number("folds_initial", "synthetic surface: initial visibility", "0.2", ours["visibility_initial"],
-                f"{ours['visibility_initial']:.3f}", "5.24")
+    page.number("folds_initial", "synthetic surface: initial visibility", "0.2", ours["visibility_initial"], "{:.3f}",
+                "5.24")
     page.number("folds_final", "synthetic surface: final visibility", "very close to 1", ours["visibility_final"],
-                f"{ours['visibility_final']:.4f}", "5.24")
+                "{:.4f}", "5.24")
     page.number("folds_crossings", "synthetic surface: crossings at the end", "topology preserved",
-                ours["self_intersections_final"], f"{ours['self_intersections_final']}", "5.24")
+                ours["self_intersections_final"], "{}", "5.24")
 
     page.section("5.3 and 5.4 The thesis's own flow in space")
     work.run("coarse", "phantom", "folds", "--edge", 2.5, "--length", 60, "--waves", 3)
@@ -735,9 +715,9 @@ def chapter_5_folds(work, page):
                 *strip(work, "literal", shown, "0.45,-1,0.75", None, size=215),
                 command=work.commands["literal"])
     page.number("literal_final", "the thesis's flow in space, region alone: final visibility", "very close to 1",
-                literal["visibility_final"], f"{literal['visibility_final']:.3f}", "5.24")
+                literal["visibility_final"], "{:.3f}", "5.24")
     page.number("literal_clear", "the same: visibility reached before any faces cross", "topology preserved", reached,
-                f"{reached:.3f}", "5.24")
+                "{:.3f}", "5.24")
     weights = [0.01, 0.03, 0.1]
     found = {}
     for surround, step in (("none", None), ("none", 0.02), ("fixed", None)):
@@ -758,9 +738,9 @@ def chapter_5_folds(work, page):
                           "weight of the knot energy", "visibility without a crossing", y_log=False),
                 command=work.commands["flow-none-0.01-adaptive"])
     page.number("flow_limit_none", "the thesis's flow in space, region alone: best visibility without a crossing over "
-                                   "weights and steps", "very close to 1", best["none"], f"{best['none']:.2f}", "5.24")
-    page.number("flow_limit_fixed", "the same in surroundings that stay", "very close to 1", best["fixed"],
-                f"{best['fixed']:.2f}", "5.24")
+                "weights and steps", "very close to 1", best["none"], "{:.2f}", "5.24")
+    page.number("flow_limit_fixed", "the same in surroundings that stay", "very close to 1", best["fixed"], "{:.2f}",
+                "5.24")
     # Time of one iteration.
     times = {}
     for knot in ("all-pairs", "thesis-tree", "tree"):
@@ -773,13 +753,13 @@ def chapter_5_folds(work, page):
               "whole cortex on a 2.53 GHz computer.")
     for key, name, thesis in (("all-pairs", "all pairs", "about 20 min"), ("thesis-tree", "merging tree", "5 s"),
                               ("tree", "our tree", "not applicable")):
-        page.number(f"seconds_{key}", f"seconds an iteration for the topology forces, {name} (thesis: about 1,500 faces of "
-                                      f"a cortex, 2.53 GHz; here: {faces} faces)", thesis, times[key],
-                    f"{times[key]:.3g} s", "5.24")
+        page.number(f"seconds_{key}",
+                    f"seconds an iteration for the topology forces, {name} (thesis: about 1,500 faces of "
+                    f"a cortex, 2.53 GHz; here: {faces} faces)", thesis, times[key], "{:.3g} s", "5.24")
     page.number("tree_gain", "time of all pairs over the merging tree", "20 min to 5 s: 240 times",
-                times["all-pairs"] / times["thesis-tree"], f"{times['all-pairs'] / times['thesis-tree']:.1f}", "5.24")
+                times["all-pairs"] / times["thesis-tree"], "{:.1f}", "5.24")
     page.number("our_gain", "time of the thesis's tree over ours", "not applicable",
-                times["thesis-tree"] / times["tree"], f"{times['thesis-tree'] / times['tree']:.0f}", "5.24")
+                times["thesis-tree"] / times["tree"], "{:.0f}", "5.24")
     definitions_5(work, page)
 
 
@@ -820,10 +800,11 @@ def chapter_5_cortex(work, page, fsaverage):
                         f"(ours {100 * ours['edge_strain_mean']:.1f} %), as nothing keeps lengths. ",
                     *strip(work, name + "-thesis", frames_of(work.path(name + "-thesis"))[::133], direction, None),
                     command=work.commands[name + "-thesis"])
-        page.number(f"thesis_region_{number}", f"figure {number} by the thesis's flow: final visibility", "not reported",
-                    literal["visibility_final"], f"{literal['visibility_final']:.3f}", number)
-        page.number(f"thesis_region_crossings_{number}", f"figure {number} by the thesis's flow: most crossing pairs in a "
-                    "state on the way", "topology preserved", crossings, f"{crossings}", number)
+        page.number(f"thesis_region_{number}", f"figure {number} by the thesis's flow: final visibility",
+                    "not reported", literal["visibility_final"], "{:.3f}", number)
+        page.number(f"thesis_region_crossings_{number}",
+                    f"figure {number} by the thesis's flow: most crossing pairs in a " "state on the way",
+                    "topology preserved", crossings, "{}", number)
         page.number(f"thesis_steps_{number}", f"figure {number} by the thesis's flow: steps within which a state was judged",
                     "150 iterations", judged, f"{judged} of {literal['iterations']}", number)
         for method, run in (("ours", ours), ("thesis's flow, region alone", literal)):
@@ -834,9 +815,9 @@ def chapter_5_cortex(work, page, fsaverage):
                          f"{100 * run['area_error_mean']:.2f} %", run["self_intersections_new"], run["iterations"],
                          f"{run['seconds_per_iteration']:.3f}"])
         page.number(f"region_{number}", f"region of a cortex (figure {number}): final visibility", "not reported",
-                    ours["visibility_final"], f"{ours['visibility_final']:.3f}", number)
+                    ours["visibility_final"], "{:.3f}", number)
         page.number(f"region_crossings_{number}", f"figure {number}: crossing pairs that are new", "topology preserved",
-                    ours["self_intersections_new"], f"{ours['self_intersections_new']}", number)
+                    ours["self_intersections_new"], "{}", number)
     page.table(["figure", "faces", "method", "flux", "seen times cosine", "flux variance", "area error", "crossings",
                 "iterations", "s an iteration"], rows)
     return surface, work.path("region-5.25")

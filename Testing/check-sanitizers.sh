@@ -20,7 +20,7 @@ case "${1:-}" in
     preset=debug
     shift
     # shellcheck disable=SC2046  # a list of words
-    [ $# -gt 0 ] || set -- $(grep -l UNIT_TESTS Modules/*/CMakeLists.txt | cut -d/ -f2)
+    [ $# -gt 0 ] || set -- $(ls -d Modules/*/test | cut -d/ -f2)
     ;;
 esac
 [ $# -gt 0 ] || set -- Core Geometry Collision Visibility Repulsion Unfolding Planar Shapes Harmonic \

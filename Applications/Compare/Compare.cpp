@@ -15,8 +15,6 @@
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Comparison.h"
 
-#include <numeric>
-
 namespace explica::app {
 namespace {
 
@@ -58,12 +56,6 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
       .results<unfolding::Comparison>();
 }
 
-std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  return faces;
-}
-
 /// The surface coloured by the logarithm of its area ratio.
 void draw(const std::filesystem::path& path, const TriangleMesh& reference,
           const TriangleMesh& after, const std::vector<std::int32_t>& faces,
@@ -94,7 +86,7 @@ Termination run(Context& context, const Settings& s) {
   const auto reference = readSurface(context, "BEFORE", s.before, s.reading);
   geometry::requireManifold(reference.mesh, s.before);
   std::vector<TriangleMesh> surfaces;
-  std::vector<std::int32_t> faces = everyFace(reference.mesh);
+  std::vector<std::int32_t> faces = reference.mesh.allFaces();
   for (const std::string& path : s.after) {
     const auto loaded = readSurface(context, path, path, s.reading);
     if (loaded.mesh.vertexCount() != reference.mesh.vertexCount()) {

@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace explica::app {
 
@@ -89,8 +88,7 @@ struct Shown {
 Shown shownOf(const io::LoadedSurface& loaded, const std::string& file) {
   Shown shown;
   shown.side = io::statedHemisphere(file);
-  std::vector<std::int32_t> all(static_cast<std::size_t>(loaded.mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
+  const auto all = loaded.mesh.allFaces();
   shown.flat = flattening::isFlatMap(loaded.mesh, all);
   geometry::SubMesh part = geometry::extractFaces(loaded.mesh, all);
   shown.surface.mesh = std::move(part.mesh);

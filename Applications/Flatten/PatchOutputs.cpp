@@ -170,7 +170,7 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
                         const TriangleMesh& flat, unfolding::FlatSummary& summary,
                         Termination& termination) {
   const TriangleMesh& before = disc.mesh;
-  const auto all = everyFace(flat.faces);
+  const auto all = flat.allFaces();
   const auto distortion = unfolding::measureDistortion(before, flat.positions, all);
   const Eigen::VectorXd angleDeg = distortion.angleErrorRad * (180 / kPi);
   const Eigen::VectorXd ratio = unfolding::vertexMeans(before, all, distortion.areaRatio, 1);

@@ -8,6 +8,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/Selection.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PatchFile.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace explica::app {
 namespace {
@@ -40,9 +40,9 @@ std::optional<std::filesystem::path> recordedOriginal(const std::filesystem::pat
 
 std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s,
                                       const TriangleMesh& mesh) {
-  const auto all = everyFace(mesh.faces);
+  const auto all = mesh.allFaces();
   if (*s.cuts == kAutomatic) {
-    const bool closed = flattening::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
+    const bool closed = geometry::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
     if (!s.labels.empty() || !closed) return all;
     return flattening::facesWithoutWall(mesh, cortexOf(context, s.surface, mesh, s.cortex));
   }
@@ -68,12 +68,6 @@ std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s
 
 }  // namespace
 
-std::vector<std::int32_t> everyFace(const Faces& faces) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(faces.rows()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std::string& name) {
   if (a.vertexCount() == b.vertexCount()) return;
   throw InvalidInput("'" + name + "': has " + std::to_string(a.vertexCount()) +
@@ -94,7 +88,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     mesh.positions = reference.mesh.positions;
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
-  subject.faces = everyFace(mesh.faces);
+  subject.faces = mesh.allFaces();
   if (s.cuts == kOfTemplate) {
     subject.cuts = readTemplateCuts(context, s, mesh);
     subject.faces = flattening::facesWithoutWall(mesh, subject.cuts->cortex);

@@ -33,8 +33,7 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
       .reference("Johnson, Li, Rabinovic 2007, Biostatistics 8:118-127")
       .example(
           "explica glm --maps maps.tsv --table participants.tsv --model 'thickness ~ group + age + "
-          "sex' "
-          "--contrast 'thinner=group[patient] - group[control]' --surface lh.pial "
+          "sex' --contrast 'thinner=group[patient] - group[control]' --surface lh.pial "
           "--permutations 10000 --tfce --out thinner",
           "Where patients' cortex is thinner")
       .input("LIST", FileKind::Table,

@@ -193,8 +193,7 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
   }
   if (columns.empty()) {
     throw InvalidInput("'" + table.name +
-                       "': no column holds what is to be analysed; name some "
-                       "with --columns");
+                       "': no column holds what is to be analysed; name some with --columns");
   }
   return columns;
 }

@@ -43,10 +43,8 @@ void declare(Declaration& d, Settings& s) {
           "FreeSurfer's sphere.reg. Several atlases vote: where sulcal depth is known of all, the "
           "votes of those whose folds are like the person's around a vertex count more. The sphere "
           "of an atlas is ?h.sphere.reg beside its file or in ../surf, as in FreeSurfer's "
-          "subjects, "
-          "with ?h.sulc; files on fsaverage3 to fsaverage need none. Without --atlas the regions "
-          "are "
-          "those of the template.")
+          "subjects, with ?h.sulc; files on fsaverage3 to fsaverage need none. Without --atlas the "
+          "regions are those of the template.")
       .reference(
           "Artaechevarria, Munoz-Barrutia, Ortiz-de-Solorzano 2009, IEEE Trans. Medical "
           "Imaging 28(8):1266-1277")
@@ -160,8 +158,7 @@ std::vector<Atlas> atlasesOf(Context& context, const Settings& s, const std::str
   const CortexTemplate known = findTemplate(context, name, structure);
   if (known.atlas.empty()) {
     throw InvalidInput("template '" + name +
-                       "': has no regions (?h.aparc.annot); name some with "
-                       "--atlas");
+                       "': has no regions (?h.aparc.annot); name some with --atlas");
   }
   context.input(known.atlas, "atlas");
   return {{known.atlas, known.sphere, known.sulc}};
@@ -187,8 +184,7 @@ std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
     if (!file) {
       throw InvalidInput("'" + s.ribbon.value_or(s.folder) + "': no " + prefix + name + " or " +
                          name +
-                         ".surf.gii in it, which --volume needs; name their folder by "
-                         "--surfaces");
+                         ".surf.gii in it, which --volume needs; name their folder by --surfaces");
     }
     ribbon[n] = readSurface(context, name, context.input(*file, name).string(),
                             {.space = io::SurfaceSpace::Scanner})

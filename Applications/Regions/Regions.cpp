@@ -33,11 +33,10 @@ void declare(Declaration& d, Settings& s) {
   d.synopsis("area, volume, thickness, curvature and any map by region of an atlas")
       .description(
           "Takes the surfaces and maps of one hemisphere from a folder, FreeSurfer's surf or one "
-          "of "
-          "explica surface, and any annotation of the same vertices. What is missing there is not "
-          "in the tables: areas are those of the white surface, or of the map area; grey volume "
-          "is the one between white and pial surface (three tetrahedra over each face), or the map "
-          "volume; curvature is the map curv, or the white surface's.\n\n"
+          "of explica surface, and any annotation of the same vertices. What is missing there is "
+          "not in the tables: areas are those of the white surface, or of the map area; grey "
+          "volume is the one between white and pial surface (three tetrahedra over each face), or "
+          "the map volume; curvature is the map curv, or the white surface's.\n\n"
           "ATLAS.stats has FreeSurfer's form and definitions: thickness is the mean over vertices, "
           "its deviation has n in the denominator. MeanCurv is the mean absolute value of the "
           "curvature map over the area; FreeSurfer takes it of a curvature that it does not write, "
@@ -119,11 +118,8 @@ Hemisphere readHemisphere(Context& context, const Settings& s, const std::string
   }
   if (found.areas.size() == 0) {
     throw InvalidInput("'" + s.folder +
-                       "': holds no white surface and no map of vertex areas of "
-                       "hemisphere " +
-                       side +
-                       " (looked for ?h.white, white.surf.gii, ?h.area, "
-                       "area.shape.gii)");
+                       "': holds no white surface and no map of vertex areas of hemisphere " +
+                       side + " (looked for ?h.white, white.surf.gii, ?h.area, area.shape.gii)");
   }
   if (found.volumes.size() == 0) found.volumes = mapOf(file("volume", "volume.shape.gii"), count);
   found.thickness = mapOf(file("thickness", "thickness.shape.gii"), count);

@@ -45,11 +45,9 @@ void declare(Declaration& d, Settings& s) {
           "the largest weight; surfaces always by barycentric weights. NaN is left out while at "
           "least half of a vertex's weight is known.\n\n"
           "--to takes a sphere, or the name of one: fsaverage3 to fsaverage6 and fsaverage are "
-          "made "
-          "(vertices in fsaverage's order, so that those of a coarser one are the first of a finer "
-          "one; FreeSurfer's folder fsaverage3 numbers the same vertices in another way). "
-          "fs_LR-32k "
-          "is read: --template names the folder with the HCP's "
+          "made (vertices in fsaverage's order, so that those of a coarser one are the first of a "
+          "finer one; FreeSurfer's folder fsaverage3 numbers the same vertices in another way). "
+          "fs_LR-32k is read: --template names the folder with the HCP's "
           "fs_LR-deformed_to-fsaverage.L.sphere.32k_fs_LR.surf.gii, which is in register with "
           "fsaverage.")
       .reference("Glasser et al. 2013, NeuroImage 80:105-124")

@@ -13,13 +13,11 @@ void declareSample(Declaration& d, SampleSettings& s) {
       .description(
           "Takes volumes (anatomy, maps, functional series, labels) at any depth between a white "
           "and a pial surface whose vertices correspond, or in the layers of explica thickness. "
-          "Outside "
-          "the field of view or the mask, and where a map holds NaN, a value is not known: it is "
-          "NaN, "
-          "valid.shape.gii says where, and no statistic counts it. A functional series is read "
-          "some "
-          "frames at a time. The volume's header says where it lies; if it lies elsewhere than the "
-          "surface, --to-volume brings places of the surface to places of the volume.")
+          "Outside the field of view or the mask, and where a map holds NaN, a value is not known: "
+          "it is NaN, valid.shape.gii says where, and no statistic counts it. A functional series "
+          "is read some frames at a time. The volume's header says where it lies; if it lies "
+          "elsewhere than the surface, --to-volume brings places of the surface to places of the "
+          "volume.")
       .reference("Waehnert and others 2014, NeuroImage 93:210-220 (depths of equal volume)")
       .example(
           "explica sample bold.nii.gz --surfaces sub-01/anat --hemisphere L --depths 5 "
@@ -41,11 +39,10 @@ void declareSample(Declaration& d, SampleSettings& s) {
                 "number of depths from white to pial, or a list: 0 white to 1 pial (default 0.5); "
                 "with --thickness the number of layers (default: those of its layers.nii.gz)"},
           s.depths)
-      .option("Depths",
-              Field{"depth-kind", "",
-                    "depths are shares of the distance or of the "
-                    "column's volume"},
-              s.depthKind)
+      .option(
+          "Depths",
+          Field{"depth-kind", "", "depths are shares of the distance or of the column's volume"},
+          s.depthKind)
       .option(
           "Depths",
           Field{"across", "",

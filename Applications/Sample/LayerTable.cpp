@@ -162,9 +162,8 @@ Termination sampleLayers(Context& context, const SampleSettings& s) {
   }
   if (s.across != sampling::Across::None || s.depthKind != sampling::DepthKind::Depth) {
     throw UsageError(
-        "--thickness makes a table of layers; --across and --depth-kind are for "
-        "surfaces (layers of equal volume come from explica thickness --layer-kind "
-        "volume, without --depths here)");
+        "--thickness makes a table of layers; --across and --depth-kind are for surfaces (layers "
+        "of equal volume come from explica thickness --layer-kind volume, without --depths here)");
   }
   requireUsable(context, s, nullptr);
   const Tissue tissue = readTissue(context, s);

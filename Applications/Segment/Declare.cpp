@@ -12,8 +12,7 @@ namespace {
 constexpr const char* kDescription =
     "Brings a template (Colin27) into the image's space: an affine map by mutual information, then "
     "a deformation. From its brain mask the border of the brain is sought in the image, up to the "
-    "skull; its "
-    "atlas says which voxels make a hemisphere. Three tissues are found by "
+    "skull; its atlas says which voxels make a hemisphere. Three tissues are found by "
     "expectation-maximisation of a mixture of pure and mixed voxels with a Markov prior, while a "
     "smooth bias field is estimated and divided out. Each hemisphere's white matter is filled with "
     "deep structures and ventricles, without cerebellum and brain stem; label 4 marks tissue cut "

@@ -35,8 +35,7 @@ TemplatePaths pathsOf(const std::string& name) {
   if (!fs::is_directory(folder)) {
     throw InvalidInput(
         "template: '" + name +
-        "' is neither colin27 nor inia19 nor none nor a folder with brain.nii.gz and "
-        "atlas.nii.gz");
+        "' is neither colin27 nor inia19 nor none nor a folder with brain.nii.gz and atlas.nii.gz");
   }
   return {folder / "T1.nii.gz", folder / "brain.nii.gz", folder / "atlas.nii.gz"};
 }

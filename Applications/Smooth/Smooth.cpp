@@ -31,9 +31,8 @@ void declare(Declaration& d, Settings& s) {
       .description(
           "Solves the heat equation on the surface, so that a point spreads to a Gaussian of the "
           "width that --fwhm says, and integrals over the surface stay. Vertices that hold NaN, "
-          "and "
-          "those where --mask is 0, keep their values and do not reach others. Give the surface "
-          "whose distances count, usually the middle surface of the same person.\n\n"
+          "and those where --mask is 0, keep their values and do not reach others. Give the "
+          "surface whose distances count, usually the middle surface of the same person.\n\n"
           "summary.json says how smooth each file is before and after (fwhm_before, fwhm_after): "
           "the width of the kernel that would give white noise the same differences between "
           "neighbours; of files with five maps or more, of their residuals about the mean map.")
@@ -91,8 +90,7 @@ std::vector<MapFile> readMapFiles(const Settings& s, const io::LoadedSurface& su
   for (const std::string& path : s.maps) {
     if (io::vertexFileKind(path) != io::VertexFileKind::Maps) {
       throw InvalidInput("'" + path +
-                         "': only maps of numbers can be smoothed, not labels or "
-                         "surfaces");
+                         "': only maps of numbers can be smoothed, not labels or surfaces");
     }
     MapFile file{path, io::nameWithEntity(path, "fwhm-" + shortNumber(s.fwhm)),
                  io::statedStructure(path), io::readVertexMaps(path, surface.mesh.vertexCount())};

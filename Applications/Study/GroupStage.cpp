@@ -190,11 +190,10 @@ void describe(Results& t, const GroupSummary& g) {
 }
 
 void declareGroup(Declaration& d, GroupSettings& s) {
-  d.option("Group",
-           Field{"include", "",
-                 "people who count although their run is doubted, with or without "
-                 "sub-"},
-           s.include)
+  d.option(
+       "Group",
+       Field{"include", "", "people who count although their run is doubted, with or without sub-"},
+       s.include)
       .option("Group",
               Field{"model", "",
                     "formula as of glm, with the columns of participants.tsv: fitted to the "

@@ -38,8 +38,7 @@ void declare(Declaration& d, Settings& s) {
           "content, are kept. A run that fails does not stop the others; its problem.txt says why. "
           "Several of these commands may work on one OUT_DIR at a time, on different subjects. "
           "SIGUSR1 or SIGTERM ends it with what was reached: exit code 3, and to be done again. "
-          "Exit "
-          "code 3, too, if some runs failed or have implausible numbers, and 2 if all failed.")
+          "Exit code 3, too, if some runs failed or have implausible numbers, and 2 if all failed.")
       .example("explica study participant study.yaml results --participant-label 01 02",
                "Two subjects")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)

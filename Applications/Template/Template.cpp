@@ -38,8 +38,7 @@ void declare(Declaration& d, Settings& s) {
           "where the people's own spheres are deformed by the identity in the mean. What is "
           "written is a folder for --template of register, parcellate and run. Surfaces are means "
           "of positions after rigid alignment; regions, where all people have some, are those of "
-          "the majority, by their names. A hemisphere that fewer than two people have is left "
-          "out.")
+          "the majority, by their names. A hemisphere that fewer than two people have is left out.")
       .reference(
           "Guimond, Meunier, Thirion 2000, Computer Vision and Image Understanding 77:192-210")
       .example("explica template sub-01 sub-02 sub-03 --out ours",

@@ -93,8 +93,7 @@ std::string crossingsInWords(const std::vector<unfolding::Crossing>& list, std::
   if (repair.moved.empty()) return message + "; they stay as they are";
   return message +
          printed(
-             "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at "
-             "most%s",
+             "; %zu were parted by moving %zu vertices by %.3f mm on average and %.3f mm at most%s",
              repair.before.size() - repair.after.size(), repair.moved.size(), repair.moveMean,
              repair.moveMax, repair.after.empty() ? "" : ", the others stay as they are");
 }

@@ -27,8 +27,7 @@ void describe(ViewSettings& view, Visitor&& visit) {
         view.direction);
   visit(Field{"distance", "mm",
               "how far off a viewpoint given by --direction is (default 1000, or three times the "
-              "surface's "
-              "extent if that is more)",
+              "surface's extent if that is more)",
               kAboveZero},
         view.distance);
   visit(Field{"view-line", "mm", "look from a segment: X,Y,Z of its start and of its end"},

@@ -105,8 +105,7 @@ Positions besidePatch(const Positions& flat, const Positions& folded) {
 /// The patch and its flat map as two states.
 viewer::Finished readFlattening(const fs::path& folder, const TriangleMesh& patch) {
   viewer::Finished finished;
-  finished.region.faces.resize(static_cast<std::size_t>(patch.faceCount()));
-  std::iota(finished.region.faces.begin(), finished.region.faces.end(), 0);
+  finished.region.faces = patch.allFaces();
   finished.region.vertices.resize(static_cast<std::size_t>(patch.vertexCount()));
   std::iota(finished.region.vertices.begin(), finished.region.vertices.end(), 0);
   viewer::Moment folded, flat;

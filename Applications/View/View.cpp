@@ -208,8 +208,7 @@ void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   if (isVolume(s.files.front())) {
     throw UsageError(
         "the window shows a surface: name one first; or write a picture of slices with "
-        "--screenshot "
-        "FILE.png");
+        "--screenshot FILE.png");
   }
   const bool folder = std::filesystem::is_directory(s.files.front());
   const auto found = folder ? surfaceOfFolder(s.files.front()) : std::nullopt;

@@ -1,34 +1,36 @@
 # SPDX-FileCopyrightText: The Explica developers
 # SPDX-License-Identifier: Apache-2.0
 # A module is a folder with include/Explica/<Name>, src, test, benchmark and one call of
-# explica_add_module: its purpose, its dependencies and its files, each said once.
+# explica_add_module: its purpose, its dependencies and its sources, each said once.  Every file of
+# include/Explica/<Name> is a public header: installed, and compiled alone by `check_headers`.  Every
+# *Test.cpp of test is a unit test, unless it is named as another kind, and every file of benchmark
+# a benchmark: an executable of its own, with Google Benchmark.
 
 # explica_add_module(<Name>
 #   PURPOSE "one sentence"
 #   COMPILE_QUICKLY             nothing in it is worth the compiler's full effort
-#   HEADERS include/...         public headers, installed, each compiled alone by `check_headers`
 #   SOURCES src/...             compiled into the static library Explica::<Name>
 #   PUBLIC  target...           links that a public header needs
 #   PRIVATE target...           all other links
 #   FIND    "Package ARGS"...   what a consumer's CMake must find for these links
-#   UNIT_TESTS test/...         GoogleTest sources by CTest label; each list is one executable
-#   PROPERTY_TESTS test/...
+#   PROPERTY_TESTS test/...     GoogleTest sources by CTest label; those of a label are one executable
 #   SLOW_TESTS test/...
-#   BENCHMARKS benchmark/...    Google Benchmark sources, one executable each
+#   OTHER_TESTS test/...        sources of executables that the module adds itself
 #   TEST_LINKS target...)       extra links of tests and benchmarks
 function(explica_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "COMPILE_QUICKLY" "PURPOSE"
-    "HEADERS;SOURCES;PUBLIC;PRIVATE;FIND;UNIT_TESTS;PROPERTY_TESTS;SLOW_TESTS;BENCHMARKS;TEST_LINKS")
+    "SOURCES;PUBLIC;PRIVATE;FIND;PROPERTY_TESTS;SLOW_TESTS;OTHER_TESTS;TEST_LINKS")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_PURPOSE OR NOT arg_SOURCES)
     message(FATAL_ERROR "explica_add_module(${name}): PURPOSE and SOURCES are needed; "
       "not understood: '${arg_UNPARSED_ARGUMENTS}'")
   endif()
 
+  file(GLOB headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} include/Explica/${name}/*.h)
   set(target Explica${name})
   add_library(${target} STATIC ${arg_SOURCES})
   add_library(Explica::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${arg_HEADERS})
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   explica_set_flags(${target})
@@ -57,7 +59,7 @@ function(explica_add_module name)
 
   # Every public header must compile alone.
   set(header_sources "")
-  foreach(header IN LISTS arg_HEADERS)
+  foreach(header IN LISTS headers)
     string(REGEX REPLACE "^include/" "" path "${header}")
     string(MAKE_C_IDENTIFIER "${path}" id)
     set(source "${CMAKE_CURRENT_BINARY_DIR}/headers/${id}.cpp")
@@ -73,6 +75,8 @@ function(explica_add_module name)
   add_dependencies(check_headers ${target}Headers)
 
   if(EXPLICA_BUILD_TESTS)
+    file(GLOB arg_UNIT_TESTS CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} test/*Test.cpp)
+    list(REMOVE_ITEM arg_UNIT_TESTS ${arg_PROPERTY_TESTS} ${arg_SLOW_TESTS} ${arg_OTHER_TESTS})
     foreach(kind IN ITEMS UNIT PROPERTY SLOW)
       if(arg_${kind}_TESTS)
         string(TOLOWER ${kind} label)
@@ -86,7 +90,8 @@ function(explica_add_module name)
   endif()
 
   if(EXPLICA_BUILD_BENCHMARKS)
-    foreach(source IN LISTS arg_BENCHMARKS)
+    file(GLOB benchmarks CONFIGURE_DEPENDS benchmark/*.cpp)
+    foreach(source IN LISTS benchmarks)
       get_filename_component(stem ${source} NAME_WE)
       add_executable(${target}${stem} ${source})
       target_link_libraries(${target}${stem} PRIVATE Explica::${name} ${arg_TEST_LINKS}

@@ -16,8 +16,8 @@ PAGE = MODULES / "README.md"
 BEGIN = "<!-- Written by Testing/update-pages.sh from the modules' CMakeLists.txt. -->\n"
 END = "<!-- Until here. -->\n"
 KEYWORDS = (
-    "PURPOSE COMPILE_QUICKLY HEADERS SOURCES PUBLIC PRIVATE FIND UNIT_TESTS PROPERTY_TESTS "
-    "SLOW_TESTS BENCHMARKS TEST_LINKS"
+    "PURPOSE COMPILE_QUICKLY SOURCES PUBLIC PRIVATE FIND PROPERTY_TESTS SLOW_TESTS OTHER_TESTS "
+    "TEST_LINKS"
 ).split()
 
 
@@ -40,8 +40,8 @@ def declared(name):
 
 
 def modules():
-    listed = re.findall(r"add_subdirectory\((\w+)\)", (MODULES / "CMakeLists.txt").read_text())
-    return {name: declared(name) for name in sorted(listed)}
+    listed = re.search(r"IN ITEMS([\w\s]+)\)", (MODULES / "CMakeLists.txt").read_text())[1]
+    return {name: declared(name) for name in sorted(listed.split())}
 
 
 def own(links):

@@ -12,8 +12,8 @@ namespace explica::app {
 struct FirstHelp {
   std::string_view command;
   std::vector<std::string_view> options;  ///< those that most people need: about a dozen
-  std::string_view before;                ///< first lines of the example
-  std::string_view last;                  ///< and what follows them
+  std::string_view last;                  ///< last lines of the example
+  std::string_view before = {};           ///< and what precedes them
 
   /// Lines that work as pasted into an empty folder.
   [[nodiscard]] std::string example() const { return std::string(before) + std::string(last); }

@@ -257,16 +257,8 @@ RepairedSurface accountOf(const Piece& piece, std::vector<FacePair> before,
   result.after = putBack ? geometry::findSelfIntersections(piece.now) : std::move(after);
   result.putBackFar = piece.far;
   result.putBackOther = piece.other;
-  double sum = 0;
-  for (std::int32_t v = 0; v < piece.now.vertexCount(); ++v) {
-    const double move = (piece.now.positions.row(v) - piece.input->positions.row(v)).norm();
-    if (move == 0) continue;
-    result.moved.push_back(v);
-    result.moveMax = std::max(result.moveMax, move);
-    sum += move;
-  }
-  if (!result.moved.empty()) result.moveMean = sum / static_cast<double>(result.moved.size());
   result.positions = piece.now.positions;
+  result.noteMoves(piece.input->positions);
   return result;
 }
 

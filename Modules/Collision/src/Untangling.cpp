@@ -308,6 +308,18 @@ bool isConcerned(const std::vector<geometry::FacePair>& pairs, const std::vector
 
 }  // namespace
 
+void Untangling::noteMoves(const Positions& start) {
+  double sum = 0;
+  for (Eigen::Index v = 0; v < start.rows(); ++v) {
+    const double move = (positions.row(v) - start.row(v)).norm();
+    if (move == 0) continue;
+    moved.push_back(static_cast<std::int32_t>(v));
+    moveMax = std::max(moveMax, move);
+    sum += move;
+  }
+  if (!moved.empty()) moveMean = sum / static_cast<double>(moved.size());
+}
+
 Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
                     const Monitor& monitor) {
   if (options.largestRings < 1 || options.largestRings > 20) {
@@ -347,16 +359,8 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
     }
     result.after = geometry::findSelfIntersections(now);
   }
-  double sum = 0;
-  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
-    const double move = (now.positions.row(v) - mesh.positions.row(v)).norm();
-    if (move == 0) continue;
-    result.moved.push_back(v);
-    result.moveMax = std::max(result.moveMax, move);
-    sum += move;
-  }
-  if (!result.moved.empty()) result.moveMean = sum / static_cast<double>(result.moved.size());
   result.positions = std::move(now.positions);
+  result.noteMoves(mesh.positions);
   return result;
 }
 

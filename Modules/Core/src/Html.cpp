@@ -3,29 +3,19 @@
 
 #include "Explica/Core/Html.h"
 
+#include <map>
+
 namespace explica {
 
-std::string escapeHtml(std::string_view text) {
+std::string escapeHtml(std::string_view text, std::string_view escaped) {
+  static const std::map<char, std::string_view> entities = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string out;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
+    if (escaped.find(c) == escaped.npos) {
+      out += c;
+    } else {
+      out += entities.at(c);
     }
   }
   return out;

@@ -95,15 +95,10 @@ Components componentsOf(const VoxelSet& set) {
       const std::size_t v = stack.back();
       stack.pop_back();
       ++size;
-      const auto at = grid.subscripts(v);
-      for (int n = 0; n < 6; ++n) {
-        auto next = at;
-        next[n / 2] += n % 2 == 0 ? -1 : 1;
-        if (!grid.contains(next[0], next[1], next[2])) continue;
-        const std::size_t w = grid.linear(next[0], next[1], next[2]);
-        if (set[w] == 0 || components.number[w] >= 0) continue;
+      for (const std::int64_t w : grid.neighbours(v)) {
+        if (w < 0 || set[w] == 0 || components.number[w] >= 0) continue;
         components.number[w] = number;
-        stack.push_back(w);
+        stack.push_back(static_cast<std::size_t>(w));
       }
     }
     components.size.push_back(size);

@@ -149,8 +149,7 @@ void describe(Results& t, const Measurement& m) {
           "No trajectory through them reaches both boundaries.", m.lost)
       .inHead();
   t.count("voxels_cut_by_image", "Voxels near the image's edge",
-          "Their thickness holds if the edge cuts the tissue at a right angle (0 in "
-          "valid.nii.gz).",
+          "Their thickness holds if the edge cuts the tissue at a right angle (0 in valid.nii.gz).",
           m.cutVoxels);
   t.number("thickness_mean", "Mean thickness", "mm",
            "Over the area of the middle surface, of columns of voxels. The mean over voxels is "

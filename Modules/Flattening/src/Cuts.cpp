@@ -4,6 +4,7 @@
 #include "Explica/Flattening/Cuts.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "FoldWays.h"
 #include "LayFlat.h"
 #include "ScaleFactor.h"
@@ -206,7 +207,7 @@ class CutSearch {
     IntrinsicDisc opened = disc_;
     const auto copyOf = openFaces(opened.mesh.faces, opened.mesh.vertexCount, cuts);
     opened.mesh.vertexCount += static_cast<Eigen::Index>(copyOf.size());
-    opened.rim = boundaryLoops(opened.mesh.faces, opened.mesh.vertexCount).front();
+    opened.rim = geometry::boundaryLoops(opened.mesh.faces, opened.mesh.vertexCount).front();
     return layTrial(opened, monitor_);
   }
 

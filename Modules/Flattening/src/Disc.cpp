@@ -156,31 +156,8 @@ void requireDiscWithHoles(const Disc& disc) {
 
 }  // namespace
 
-std::vector<Loop> boundaryLoops(const Faces& faces, Eigen::Index vertexCount) {
-  const auto topology = geometry::buildTopology(faces, vertexCount);
-  std::vector<std::int32_t> next(static_cast<std::size_t>(vertexCount), -1);
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      if (topology.edgeFaces(topology.faceEdges(f, k), 1) >= 0) continue;
-      next[faces(f, k)] = faces(f, (k + 1) % 3);
-    }
-  }
-  std::vector<Loop> loops;
-  std::vector<bool> done(next.size(), false);
-  for (std::size_t v = 0; v < next.size(); ++v) {
-    if (next[v] < 0 || done[v]) continue;
-    Loop loop;
-    for (auto at = static_cast<std::int32_t>(v); !done[at]; at = next[at]) {
-      done[at] = true;
-      loop.push_back(at);
-    }
-    loops.push_back(std::move(loop));
-  }
-  return loops;
-}
-
 void findLoops(Disc& disc) {
-  auto loops = boundaryLoops(disc.mesh.faces, disc.mesh.vertexCount());
+  auto loops = geometry::boundaryLoops(disc.mesh.faces, disc.mesh.vertexCount());
   if (loops.empty()) {
     throw InvalidInput(
         "surface: it is closed, so that no plane can hold it; cut it (--cuts), or give a part of "

@@ -14,35 +14,10 @@
 namespace explica::flattening {
 namespace {
 
-/// The part of each chosen face, chosen faces joined by edges; -1 for the others.
-std::vector<std::int32_t> partsOf(const geometry::MeshTopology& topology,
-                                  const std::vector<bool>& chosen) {
-  std::vector<std::int32_t> part(chosen.size(), -1), queue;
-  std::int32_t parts = 0;
-  for (std::size_t first = 0; first < chosen.size(); ++first) {
-    if (!chosen[first] || part[first] >= 0) continue;
-    part[first] = parts;
-    queue.assign(1, static_cast<std::int32_t>(first));
-    while (!queue.empty()) {
-      const std::int32_t f = queue.back();
-      queue.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        const auto faces = topology.edgeFaces.row(topology.faceEdges(f, k));
-        const std::int32_t g = faces[0] == f ? faces[1] : faces[0];
-        if (g < 0 || !chosen[g] || part[g] >= 0) continue;
-        part[g] = parts;
-        queue.push_back(g);
-      }
-    }
-    ++parts;
-  }
-  return part;
-}
-
 /// True for the faces of the part that has the largest area; none if there is no part.
 std::vector<bool> largestPart(const geometry::MeshTopology& topology, const Eigen::VectorXd& areas,
                               const std::vector<bool>& chosen) {
-  const auto part = partsOf(topology, chosen);
+  const auto part = geometry::facePieces(topology, chosen);
   std::vector<double> sizes;
   for (std::size_t f = 0; f < part.size(); ++f) {
     if (part[f] < 0) continue;

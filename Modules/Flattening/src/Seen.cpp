@@ -8,7 +8,6 @@
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <cmath>
-#include <numeric>
 
 namespace explica::flattening {
 namespace {
@@ -25,8 +24,7 @@ Vector onSphere(int n, int count) {
 }  // namespace
 
 double seenShare(const TriangleMesh& mesh, int viewpoints) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
+  const auto all = mesh.allFaces();
   Point low = Point::Constant(kInfinity), high = -low;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     for (int k = 0; k < 3; ++k) {

@@ -368,6 +368,52 @@ std::vector<std::int32_t> faceComponents(const Faces& faces, Eigen::Index vertex
   return component;
 }
 
+std::vector<std::int32_t> facePieces(const MeshTopology& topology,
+                                     const std::vector<bool>& chosen) {
+  std::vector<std::int32_t> piece(chosen.size(), -1), waiting;
+  std::int32_t pieces = 0;
+  for (std::size_t first = 0; first < chosen.size(); ++first) {
+    if (!chosen[first] || piece[first] >= 0) continue;
+    piece[first] = pieces;
+    waiting.assign(1, static_cast<std::int32_t>(first));
+    while (!waiting.empty()) {
+      const std::int32_t f = waiting.back();
+      waiting.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        for (const std::int32_t g : topology.edgeFaces.row(topology.faceEdges(f, k))) {
+          if (g < 0 || !chosen[g] || piece[g] >= 0) continue;
+          piece[g] = pieces;
+          waiting.push_back(g);
+        }
+      }
+    }
+    ++pieces;
+  }
+  return piece;
+}
+
+std::vector<std::vector<std::int32_t>> boundaryLoops(const Faces& faces, Eigen::Index vertexCount) {
+  const MeshTopology topology = buildTopology(faces, vertexCount);
+  std::vector<std::int32_t> next(static_cast<std::size_t>(vertexCount), -1);
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      if (topology.edgeFaces(topology.faceEdges(f, k), 1) >= 0) continue;
+      next[faces(f, k)] = faces(f, (k + 1) % 3);
+    }
+  }
+  std::vector<std::vector<std::int32_t>> loops;
+  std::vector<bool> done(next.size(), false);
+  for (std::size_t v = 0; v < next.size(); ++v) {
+    if (next[v] < 0 || done[v]) continue;
+    std::vector<std::int32_t>& loop = loops.emplace_back();
+    for (auto at = static_cast<std::int32_t>(v); at >= 0 && !done[at]; at = next[at]) {
+      done[at] = true;
+      loop.push_back(at);
+    }
+  }
+  return loops;
+}
+
 SubMesh extractFaces(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
   SubMesh part;
   part.faceOrigin.assign(faces.begin(), faces.end());

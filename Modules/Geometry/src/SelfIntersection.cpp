@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 namespace explica::geometry {
 namespace {
@@ -118,9 +117,7 @@ std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh,
 }  // namespace
 
 std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
-  return intersectingPairs(mesh, all, {});
+  return intersectingPairs(mesh, mesh.allFaces(), {});
 }
 
 std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,

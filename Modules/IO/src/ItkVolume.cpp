@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "ItkVolume.h"
+#include "VolumeFormats.h"
 
 #include "ByteSource.h"
 
@@ -18,6 +18,8 @@
 
 namespace explica::io {
 namespace {
+
+enum class ItkFormat { Nrrd, MetaImage };
 
 constexpr std::size_t kLongestHeader = 1 << 16;  // bytes; ITK's own headers have some hundred
 
@@ -207,32 +209,18 @@ StoredData metaImageData(const std::filesystem::path& path, const TextHeader& he
 }
 
 std::optional<StoredType> typeOf(itk::IOComponentEnum type) {
-  switch (type) {
-    case itk::IOComponentEnum::CHAR:
-      return StoredType::Int8;
-    case itk::IOComponentEnum::UCHAR:
-      return StoredType::UInt8;
-    case itk::IOComponentEnum::SHORT:
-      return StoredType::Int16;
-    case itk::IOComponentEnum::USHORT:
-      return StoredType::UInt16;
-    case itk::IOComponentEnum::INT:
-      return StoredType::Int32;
-    case itk::IOComponentEnum::UINT:
-      return StoredType::UInt32;
-    case itk::IOComponentEnum::LONG:
-    case itk::IOComponentEnum::LONGLONG:
-      return StoredType::Int64;
-    case itk::IOComponentEnum::ULONG:
-    case itk::IOComponentEnum::ULONGLONG:
-      return StoredType::UInt64;
-    case itk::IOComponentEnum::FLOAT:
-      return StoredType::Float32;
-    case itk::IOComponentEnum::DOUBLE:
-      return StoredType::Float64;
-    default:
-      return {};
+  using Itk = itk::IOComponentEnum;
+  constexpr std::pair<Itk, StoredType> kTypes[] = {
+      {Itk::CHAR, StoredType::Int8},      {Itk::UCHAR, StoredType::UInt8},
+      {Itk::SHORT, StoredType::Int16},    {Itk::USHORT, StoredType::UInt16},
+      {Itk::INT, StoredType::Int32},      {Itk::UINT, StoredType::UInt32},
+      {Itk::LONG, StoredType::Int64},     {Itk::ULONG, StoredType::UInt64},
+      {Itk::LONGLONG, StoredType::Int64}, {Itk::ULONGLONG, StoredType::UInt64},
+      {Itk::FLOAT, StoredType::Float32},  {Itk::DOUBLE, StoredType::Float64}};
+  for (const auto& [known, stored] : kTypes) {
+    if (known == type) return stored;
   }
+  return {};
 }
 
 /// ITK's physical space is LPS: x and y change sign.
@@ -254,8 +242,8 @@ Eigen::Matrix4d affineOf(const std::filesystem::path& path, const itk::ImageIOBa
   return affine;
 }
 
-}  // namespace
-
+/// Reads through ITK's own ImageIO of the format, and turns its LPS into RAS.  The header is
+/// checked before ITK sees it, because ITK trusts the sizes it finds there.
 StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Extent extent) {
   StoredVolume volume;
   volume.origin.path = path;
@@ -328,6 +316,19 @@ StoredVolume readWithItk(const std::filesystem::path& path, ItkFormat format, Ex
     failToRead(path, "cannot be read: " + cause.substr(0, cause.find('\n')));
   }
   return volume;
+}
+
+}  // namespace
+
+// ITK opens the files itself.
+StoredVolume readNrrd(ByteSource&, const std::filesystem::path& path, const VolumeReadOptions&,
+                      Extent extent) {
+  return readWithItk(path, ItkFormat::Nrrd, extent);
+}
+
+StoredVolume readMetaImage(ByteSource&, const std::filesystem::path& path, const VolumeReadOptions&,
+                           Extent extent) {
+  return readWithItk(path, ItkFormat::MetaImage, extent);
 }
 
 }  // namespace explica::io

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "MghFormat.h"
+#include "VolumeFormats.h"
 
 #include <algorithm>
 #include <array>
@@ -99,7 +99,8 @@ bool looksLikeMgh(ByteView firstBytes) {
   return true;
 }
 
-StoredVolume readMgh(ByteSource& source, Extent extent) {
+StoredVolume readMgh(ByteSource& source, const std::filesystem::path&, const VolumeReadOptions&,
+                     Extent extent) {
   const std::filesystem::path& path = source.path();
   const Bytes header = source.take(kHeader);
   if (!looksLikeMgh(header)) failToRead(path, "is not an MGH file");

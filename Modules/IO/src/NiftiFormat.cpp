@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "NiftiFormat.h"
+#include "VolumeFormats.h"
 
 #include <Eigen/Geometry>
 
@@ -320,7 +320,8 @@ bool looksLikeNifti(ByteView firstBytes) {
   return detect(firstBytes).has_value();
 }
 
-StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent extent) {
+StoredVolume readNifti(ByteSource& source, const std::filesystem::path&,
+                       const VolumeReadOptions& options, Extent extent) {
   const std::filesystem::path& path = source.path();
   Bytes first = source.take(kHeader1);
   const std::optional<Detected> detected = detect(first);
@@ -355,7 +356,7 @@ StoredVolume readNifti(ByteSource& source, PlacementChoice placement, Extent ext
     volume.slope = header.slope;
     volume.intercept = header.intercept;
   }
-  const Eigen::Matrix4d affine = place(header, size, placement, volume.origin);
+  const Eigen::Matrix4d affine = place(header, size, options.placement, volume.origin);
   volume.grid = gridOf(path, size, affine);
   volume.origin.affine = affine;
   volume.bigEndian = header.bigEndian;

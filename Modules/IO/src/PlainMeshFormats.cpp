@@ -4,6 +4,7 @@
 #include "PlainMeshFormats.h"
 
 #include "MeshBuilder.h"
+#include "StoredVolume.h"
 
 #include "Explica/Core/WholeFile.h"
 
@@ -41,16 +42,16 @@ void noteRest(ByteCursor& cursor, LoadedSurface& surface) {
   }
 }
 
-enum class PlyType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Float32, Float64 };
-
-PlyType plyTypeOf(const std::filesystem::path& path, std::string_view word) {
-  static constexpr std::pair<std::string_view, PlyType> kTypes[] = {
-      {"char", PlyType::Int8},      {"int8", PlyType::Int8},       {"uchar", PlyType::UInt8},
-      {"uint8", PlyType::UInt8},    {"short", PlyType::Int16},     {"int16", PlyType::Int16},
-      {"ushort", PlyType::UInt16},  {"uint16", PlyType::UInt16},   {"int", PlyType::Int32},
-      {"int32", PlyType::Int32},    {"uint", PlyType::UInt32},     {"uint32", PlyType::UInt32},
-      {"float", PlyType::Float32},  {"float32", PlyType::Float32}, {"double", PlyType::Float64},
-      {"float64", PlyType::Float64}};
+StoredType plyTypeOf(const std::filesystem::path& path, std::string_view word) {
+  static constexpr std::pair<std::string_view, StoredType> kTypes[] = {
+      {"char", StoredType::Int8},      {"int8", StoredType::Int8},
+      {"uchar", StoredType::UInt8},    {"uint8", StoredType::UInt8},
+      {"short", StoredType::Int16},    {"int16", StoredType::Int16},
+      {"ushort", StoredType::UInt16},  {"uint16", StoredType::UInt16},
+      {"int", StoredType::Int32},      {"int32", StoredType::Int32},
+      {"uint", StoredType::UInt32},    {"uint32", StoredType::UInt32},
+      {"float", StoredType::Float32},  {"float32", StoredType::Float32},
+      {"double", StoredType::Float64}, {"float64", StoredType::Float64}};
   for (const auto& [name, type] : kTypes) {
     if (name == word) return type;
   }
@@ -59,9 +60,9 @@ PlyType plyTypeOf(const std::filesystem::path& path, std::string_view word) {
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::Float32;
+  StoredType type = StoredType::Float32;
   bool list = false;
-  PlyType countType = PlyType::UInt8;
+  StoredType countType = StoredType::UInt8;
 };
 
 struct PlyElement {
@@ -74,29 +75,13 @@ class PlyValues {
  public:
   PlyValues(const std::filesystem::path& path, ByteCursor& cursor, bool text)
       : path_(path), cursor_(cursor), text_(text) {}
-  double take(PlyType type) {
+  double take(StoredType type) {
     if (text_) return parseNumber<double>(path_, cursor_.word());
-    switch (type) {
-      case PlyType::Int8:
-        return cursor_.take<std::int8_t>();
-      case PlyType::UInt8:
-        return cursor_.take<std::uint8_t>();
-      case PlyType::Int16:
-        return cursor_.take<std::int16_t>();
-      case PlyType::UInt16:
-        return cursor_.take<std::uint16_t>();
-      case PlyType::Int32:
-        return cursor_.take<std::int32_t>();
-      case PlyType::UInt32:
-        return cursor_.take<std::uint32_t>();
-      case PlyType::Float32:
-        return cursor_.take<float>();
-      case PlyType::Float64:
-        return cursor_.take<double>();
-    }
-    return 0;
+    double value = 0;
+    withType(type, [&]<class In>(const In*) { value = static_cast<double>(cursor_.take<In>()); });
+    return value;
   }
-  std::int64_t takeWhole(PlyType type) { return wholeNumber(path_, take(type)); }
+  std::int64_t takeWhole(StoredType type) { return wholeNumber(path_, take(type)); }
 
  private:
   const std::filesystem::path& path_;

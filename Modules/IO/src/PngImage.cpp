@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "PngImage.h"
+#include "VolumeFormats.h"
 
 #include <png.h>
 
@@ -8,7 +8,8 @@
 
 namespace explica::io {
 
-StoredVolume readPng(const std::filesystem::path& path, Extent extent) {
+StoredVolume readPng(ByteSource&, const std::filesystem::path& path, const VolumeReadOptions&,
+                     Extent extent) {
   const Bytes bytes = readFile(path);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -6,6 +6,7 @@
 #include "Bytes.h"
 #include "PackedFile.h"
 
+#include "Explica/Core/Describe.h"
 #include "Explica/IO/VolumeFile.h"
 
 #include <array>
@@ -26,6 +27,20 @@ enum class StoredType {
   Float32,
   Float64
 };
+
+constexpr auto enumWords(StoredType) {
+  using enum StoredType;
+  return std::to_array<EnumWord<StoredType>>({{Int8, "int8"},
+                                              {UInt8, "uint8"},
+                                              {Int16, "int16"},
+                                              {UInt16, "uint16"},
+                                              {Int32, "int32"},
+                                              {UInt32, "uint32"},
+                                              {Int64, "int64"},
+                                              {UInt64, "uint64"},
+                                              {Float32, "float32"},
+                                              {Float64, "float64"}});
+}
 
 /// Calls action with a null pointer of the stored type.
 template <class Action>
@@ -55,7 +70,6 @@ void withType(StoredType type, const Action& action) {
 }
 
 [[nodiscard]] std::size_t widthOf(StoredType type);
-[[nodiscard]] const char* nameOf(StoredType type);
 
 /// A volume as its file has it, native byte order, before values are scaled and converted.
 struct StoredVolume {

@@ -6,9 +6,9 @@
 #include "ByteSource.h"
 #include "FreeSurferFormat.h"
 #include "GiftiFormat.h"
-#include "MghFormat.h"
 #include "PlainMeshFormats.h"
 #include "SurfaceFrame.h"
+#include "VolumeFormats.h"
 #include "VtkFormat.h"
 
 #include "Explica/IO/VolumeSeries.h"

@@ -296,32 +296,6 @@ std::size_t widthOf(StoredType type) {
   return width;
 }
 
-const char* nameOf(StoredType type) {
-  switch (type) {
-    case StoredType::Int8:
-      return "int8";
-    case StoredType::UInt8:
-      return "uint8";
-    case StoredType::Int16:
-      return "int16";
-    case StoredType::UInt16:
-      return "uint16";
-    case StoredType::Int32:
-      return "int32";
-    case StoredType::UInt32:
-      return "uint32";
-    case StoredType::Int64:
-      return "int64";
-    case StoredType::UInt64:
-      return "uint64";
-    case StoredType::Float32:
-      return "float32";
-    case StoredType::Float64:
-      return "float64";
-  }
-  return "unknown";
-}
-
 namespace {
 
 /// Refuses sizes and places that no scanner or microscope gives: a header in other units, or torn.

@@ -3,39 +3,13 @@
 
 #include "VolumeFormats.h"
 
-#include "ItkVolume.h"
-#include "MghFormat.h"
-#include "NiftiFormat.h"
-#include "PngImage.h"
-
 namespace explica::io {
 namespace {
 
-using Path = std::filesystem::path;
-
-StoredVolume readNiftiFile(ByteSource& source, const Path&, const VolumeReadOptions& options,
-                           Extent extent) {
-  return readNifti(source, options.placement, extent);
-}
-
-StoredVolume readMghFile(ByteSource& source, const Path&, const VolumeReadOptions&, Extent extent) {
-  return readMgh(source, extent);
-}
-
-[[noreturn]] StoredVolume refuseMinc(ByteSource&, const Path& path, const VolumeReadOptions&,
-                                     Extent) {
+[[noreturn]] StoredVolume refuseMinc(ByteSource&, const std::filesystem::path& path,
+                                     const VolumeReadOptions&, Extent) {
   refuse(path,
          "is a MINC file (netCDF or HDF5), which is not read; convert it: mnc2nii IN.mnc OUT.nii");
-}
-
-/// ITK opens the file itself.
-template <ItkFormat format>
-StoredVolume readByItk(ByteSource&, const Path& path, const VolumeReadOptions&, Extent extent) {
-  return readWithItk(path, format, extent);
-}
-
-StoredVolume readPngFile(ByteSource&, const Path& path, const VolumeReadOptions&, Extent extent) {
-  return readPng(path, extent);
 }
 
 /// Whether a file begins with these bytes.
@@ -67,16 +41,16 @@ const std::vector<VolumeFormat>& volumeFormats() {
   static const std::vector<VolumeFormat> all = {
       {"NIfTI",
        looksLikeNifti,
-       readNiftiFile,
+       readNifti,
        {{".nii.gz", true}, {".nii", false}},
        VolumeLayout{.head = niftiHeader}},
-      {"NRRD", looksLikeNrrd, readByItk<ItkFormat::Nrrd>},
-      {"PNG", looksLikePng, readPngFile},
-      {"MetaImage", looksLikeMetaImage, readByItk<ItkFormat::MetaImage>},
+      {"NRRD", looksLikeNrrd, readNrrd},
+      {"PNG", looksLikePng, readPng},
+      {"MetaImage", looksLikeMetaImage, readMetaImage},
       {"MINC", looksLikeMinc, refuseMinc},
       {"MGH",
        looksLikeMgh,
-       readMghFile,
+       readMgh,
        {{".mgz", true}, {".mgh.gz", true}, {".mgh", false}},
        VolumeLayout{.head = mghHeader, .tail = mghFooter, .bigEndian = true}}};
   return all;

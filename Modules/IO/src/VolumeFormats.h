@@ -35,6 +35,30 @@ struct VolumeFormat {
   std::optional<VolumeLayout> layout = {};
 };
 
+/// The first bytes of NIfTI-1, NIfTI-2 or Analyze headers (the last to say why not).
+[[nodiscard]] bool looksLikeNifti(ByteView firstBytes);
+[[nodiscard]] bool looksLikeMgh(ByteView firstBytes);
+
+[[nodiscard]] StoredVolume readNifti(ByteSource& source, const std::filesystem::path& path,
+                                     const VolumeReadOptions& options, Extent extent);
+[[nodiscard]] StoredVolume readMgh(ByteSource& source, const std::filesystem::path& path,
+                                   const VolumeReadOptions& options, Extent extent);
+[[nodiscard]] StoredVolume readNrrd(ByteSource& source, const std::filesystem::path& path,
+                                    const VolumeReadOptions& options, Extent extent);
+[[nodiscard]] StoredVolume readMetaImage(ByteSource& source, const std::filesystem::path& path,
+                                         const VolumeReadOptions& options, Extent extent);
+/// A grey picture as one slice, rows downwards, pixels of 1 mm.
+[[nodiscard]] StoredVolume readPng(ByteSource& source, const std::filesystem::path& path,
+                                   const VolumeReadOptions& options, Extent extent);
+
+/// Header of a single-file NIfTI-1, or NIfTI-2 where a size exceeds 32767; what follows is the
+/// data.
+[[nodiscard]] Bytes niftiHeader(const VolumeToWrite& volume);
+/// 284 bytes: FreeSurfer's geometry with goodRASFlag 1.
+[[nodiscard]] Bytes mghHeader(const VolumeToWrite& volume);
+/// The scan parameters that follow the data, all 0 (unknown).
+[[nodiscard]] Bytes mghFooter();
+
 /// Every format, in the order in which readers look at the content.
 [[nodiscard]] const std::vector<VolumeFormat>& volumeFormats();
 

@@ -9,31 +9,19 @@
 
 #include "Explica/Core/WholeFile.h"
 
+#include <array>
+
 namespace explica::io {
 namespace {
 
-int vtkTypeOf(CellKind kind) {
-  switch (kind) {
-    case CellKind::Line:
-      return 3;
-    case CellKind::Quad:
-      return 9;
-    case CellKind::Hexahedron:
-      return 12;
-  }
-  return 0;
-}
+struct VtkCell {
+  std::uint8_t type;  ///< VTK's number
+  Eigen::Index corners;
+};
 
-Eigen::Index cornersOf(CellKind kind) {
-  switch (kind) {
-    case CellKind::Line:
-      return 2;
-    case CellKind::Quad:
-      return 4;
-    case CellKind::Hexahedron:
-      return 8;
-  }
-  return 0;
+VtkCell cellOf(CellKind kind) {
+  constexpr std::array<VtkCell, 3> kCells = {{{3, 2}, {9, 4}, {12, 8}}};  // as CellKind has them
+  return kCells[static_cast<std::size_t>(kind)];
 }
 
 void writeDocument(const std::filesystem::path& path, const std::string& type,
@@ -137,17 +125,17 @@ void writeVtu(const std::filesystem::path& path, const Positions& points,
   std::vector<std::int32_t> offsets;
   std::vector<std::uint8_t> types;
   for (const Cells& group : cells) {
-    if (group.vertices.rows() > 0 && group.vertices.cols() != cornersOf(group.kind)) {
+    if (group.vertices.rows() > 0 && group.vertices.cols() != cellOf(group.kind).corners) {
       throw InvalidInput("cells for " + quoted(path) + ": rows of " +
                          std::to_string(group.vertices.cols()) + " vertices; their kind has " +
-                         std::to_string(cornersOf(group.kind)));
+                         std::to_string(cellOf(group.kind).corners));
     }
     connectivity.insert(connectivity.end(), group.vertices.data(),
                         group.vertices.data() + group.vertices.size());
     for (Eigen::Index c = 0; c < group.vertices.rows(); ++c) {
       const std::int32_t before = offsets.empty() ? 0 : offsets.back();
       offsets.push_back(before + static_cast<std::int32_t>(group.vertices.cols()));
-      types.push_back(static_cast<std::uint8_t>(vtkTypeOf(group.kind)));
+      types.push_back(cellOf(group.kind).type);
     }
   }
   const auto cellCount = static_cast<Eigen::Index>(offsets.size());

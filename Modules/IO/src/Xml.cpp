@@ -3,6 +3,8 @@
 
 #include "Xml.h"
 
+#include "Explica/Core/Html.h"
+
 #include <expat.h>
 
 #include <algorithm>
@@ -106,26 +108,7 @@ XmlElement parseXml(const std::filesystem::path& path, std::string_view document
 }
 
 std::string escapedXml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
+  return escapeHtml(text, "&<>\"");
 }
 
 std::string trimmedText(std::string_view text) {

@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace explica::inflation {
 namespace {
@@ -47,8 +46,7 @@ void requireUsable(const TriangleMesh& mesh, const InflateOptions& options) {
 
 unfolding::Region wholeOf(const TriangleMesh& mesh) {
   unfolding::Region region;
-  region.faces.resize(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(region.faces.begin(), region.faces.end(), 0);
+  region.faces = mesh.allFaces();
   std::vector<bool> used(static_cast<std::size_t>(mesh.vertexCount()), false);
   for (const std::int32_t v : mesh.faces.reshaped()) used[v] = true;
   for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {

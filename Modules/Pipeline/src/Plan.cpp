@@ -50,39 +50,21 @@ enum class Naming {
   Unknown
 };
 
-const char* meaningOf(Naming naming) {
-  switch (naming) {
-    case Naming::FreeSurfer:
-      return "FreeSurfer's labels";
-    case Naming::Ribbon:
-      return "FreeSurfer's ribbon";
-    case Naming::ThreeClass:
-      return "1 fluid, 2 grey, 3 white";
-    case Naming::BidsClasses:
-      return "1 grey, 2 white, 3 fluid";
-    case Naming::Unknown:
-      return "names not known";
-  }
-  return "";
+constexpr auto enumWords(Naming) {
+  return std::to_array<EnumWord<Naming>>({{Naming::FreeSurfer, "FreeSurfer's labels"},
+                                          {Naming::Ribbon, "FreeSurfer's ribbon"},
+                                          {Naming::ThreeClass, "1 fluid, 2 grey, 3 white"},
+                                          {Naming::BidsClasses, "1 grey, 2 white, 3 fluid"},
+                                          {Naming::Unknown, "names not known"}});
 }
 
 /// The class of 1, 2, 3 that touches both others most: grey matter lies between the two.
 int middleClass(const Volume<Label>& labels) {
   std::array<std::array<std::int64_t, 4>, 4> contacts{};
-  const auto& n = labels.grid.size;
-  const auto touch = [&](Label a, Label b) {
+  forContacts(labels, [&](Label a, Label b) {
     if (a == b || a < 1 || b < 1 || a > 3 || b > 3) return;
     ++contacts[std::min(a, b)][std::max(a, b)];
-  };
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i + 1 < n[0]; ++i) {
-        touch(labels(i, j, k), labels(i + 1, j, k));
-        if (j + 1 < n[1]) touch(labels(i, j, k), labels(i, j + 1, k));
-        if (k + 1 < n[2]) touch(labels(i, j, k), labels(i, j, k + 1));
-      }
-    }
-  }
+  });
   // The pair that touches least leaves the class between.
   const auto least = std::min({contacts[1][2], contacts[1][3], contacts[2][3]});
   if (least == contacts[1][3]) return 2;
@@ -251,7 +233,7 @@ class Planner {
       // One slice has a thickness, but no surfaces.
       const bool solid = wanted(options_, RunStep::Surface) || wanted(options_, RunStep::Unfold);
       labels_ = nameLabels(*files_.labels, solid ? std::optional(3) : std::nullopt);
-      use("labels", *files_.labels, meaningOf(labels_.naming));
+      use("labels", *files_.labels, std::string(nameOf(labels_.naming)));
     }
     const bool given = surfaces().white.has_value();
     if (!given && !files_.labels && !files_.t1) {

@@ -382,8 +382,7 @@ Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>
   constexpr double kLeastInformation = 1.06;
   if (!(found.value >= kLeastInformation)) {
     throw InvalidInput(
-        "t2: it does not look like the image, wherever it is moved: is it of the "
-        "same head?");
+        "t2: it does not look like the image, wherever it is moved: is it of the same head?");
   }
   const Eigen::Affine3d map = mapOf(found.parameters, centre, centre);
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();

@@ -44,17 +44,11 @@ Volume<float> localMean(const Volume<float>& image, const Chosen& chosen) {
   for (std::size_t v = 0; v < sum.size(); ++v) {
     sum[v] = (sum[v] + kFaint * mean) / (weight[v] + kFaint);
   }
-  Volume<float> everywhere(image.grid);
-  forPlanes(image.grid, [&](int k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        Vector at = coarse.toIndex(image.grid.toWorld(Vector(i, j, k)));
-        for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, coarse.size[a] - 1.0);
-        everywhere(i, j, k) = valueAt(sum, at);
-      }
-    }
+  return volumeBy(image.grid, [&](const Vector& index) {
+    Vector at = coarse.toIndex(image.grid.toWorld(index));
+    for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, coarse.size[a] - 1.0);
+    return valueAt(sum, at);
   });
-  return everywhere;
 }
 
 /// Brightness of chosen voxels that are darker than a level, and so are their six neighbours: no

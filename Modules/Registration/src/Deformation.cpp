@@ -94,15 +94,11 @@ FieldLevel coarser(const FieldLevel& fine, double factor) {
 Volume<float> displaced(const Volume<float>& volume, const Field& u) {
   Volume<float> result(volume.grid);
   const Grid& grid = volume.grid;
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      std::size_t v = grid.linear(0, j, k);
-      for (int i = 0; i < grid.size[0]; ++i, ++v) {
-        Vector at(i + u[0][v], j + u[1][v], k + u[2][v]);
-        for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, grid.size[a] - 1.0);
-        result[v] = valueAt(volume, at);
-      }
-    }
+  forLattice(grid, [&](int i, int j, int k) {
+    const std::size_t v = grid.linear(i, j, k);
+    Vector at(i + u[0][v], j + u[1][v], k + u[2][v]);
+    for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, grid.size[a] - 1.0);
+    result[v] = valueAt(volume, at);
   });
   return result;
 }
@@ -181,15 +177,11 @@ void normalise(Field& field) {
 Field updateOf(const FieldLevel& level, const Volume<float>& moved, const Volume<float>& force,
                double width) {
   Field update = zeroField(level.grid);
-  forPlanes(level.grid, [&](int k) {
-    for (int j = 0; j < level.grid.size[1]; ++j) {
-      for (int i = 0; i < level.grid.size[0]; ++i) {
-        const std::size_t v = level.grid.linear(i, j, k);
-        const float size = level.weight[v] * force[v];
-        if (size == 0) continue;
-        for (int a = 0; a < 3; ++a) update[a][v] = size * slopeAlong(moved, i, j, k, a);
-      }
-    }
+  forLattice(level.grid, [&](int i, int j, int k) {
+    const std::size_t v = level.grid.linear(i, j, k);
+    const float size = level.weight[v] * force[v];
+    if (size == 0) return;
+    for (int a = 0; a < 3; ++a) update[a][v] = size * slopeAlong(moved, i, j, k, a);
   });
   for (auto& component : update) {
     component = smoothed(std::move(component), width * level.grid.spacing[0]);
@@ -214,17 +206,13 @@ Field composed(const Field& u, Field v, double step, double width) {
 
 /// The field on a finer grid of the same axes.
 Field refined(const Field& u, const Grid& grid) {
-  Field result = zeroField(grid);
+  Field result;
   const auto ratio = static_cast<float>(u[0].grid.spacing[0] / grid.spacing[0]);
   for (int a = 0; a < 3; ++a) {
-    forPlanes(grid, [&](int k) {
-      for (int j = 0; j < grid.size[1]; ++j) {
-        for (int i = 0; i < grid.size[0]; ++i) {
-          Vector at = u[a].grid.toIndex(grid.toWorld(Vector(i, j, k)));
-          for (int b = 0; b < 3; ++b) at[b] = std::clamp(at[b], 0.0, u[a].grid.size[b] - 1.0);
-          result[a](i, j, k) = ratio * valueAt(u[a], at);
-        }
-      }
+    result[a] = volumeBy(grid, [&](const Vector& index) {
+      Vector at = u[a].grid.toIndex(grid.toWorld(index));
+      for (int b = 0; b < 3; ++b) at[b] = std::clamp(at[b], 0.0, u[a].grid.size[b] - 1.0);
+      return ratio * valueAt(u[a], at);
     });
   }
   return result;
@@ -285,14 +273,10 @@ Agreement agreementIn(const FieldLevel& level, const Field& u, int radius) {
 Field fieldOf(const HeadTransform& transform, const Grid& grid) {
   Field u = zeroField(grid);
   const Eigen::Affine3d back = transform.affine.inverse();
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Vector index(i, j, k);
-        const Vector there = grid.toIndex(back * transform(grid.toWorld(index))) - index;
-        for (int a = 0; a < 3; ++a) u[a](i, j, k) = static_cast<float>(there[a]);
-      }
-    }
+  forLattice(grid, [&](int i, int j, int k) {
+    const Vector index(i, j, k);
+    const Vector there = grid.toIndex(back * transform(grid.toWorld(index))) - index;
+    for (int a = 0; a < 3; ++a) u[a](i, j, k) = static_cast<float>(there[a]);
   });
   return u;
 }

@@ -111,13 +111,6 @@ float valueAt(const Volume<float>& volume, const Vector& index, float outside) {
   return (1 - share[2]) * near + share[2] * far;
 }
 
-void forPlanes(const Grid& grid, const std::function<void(int k)>& work) {
-  parallelForBlocks(static_cast<std::size_t>(grid.size[2]), 1,
-                    [&](std::size_t begin, std::size_t end) {
-                      for (std::size_t k = begin; k < end; ++k) work(static_cast<int>(k));
-                    });
-}
-
 Grid cubicGrid(const Grid& like, const Vector& low, const Vector& high, double spacing) {
   Grid grid;
   grid.spacing = Vector::Constant(spacing);
@@ -136,15 +129,9 @@ Volume<float> resampled(const Volume<float>& volume, const Grid& grid) {
   // The blur that makes a voxel of the finer grid as wide as one of the coarser.
   const double sigma = 0.5 * std::sqrt(std::max(0.0, wanted * wanted - present * present));
   const Volume<float> source = smoothed(volume, sigma);
-  Volume<float> result(grid);
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        result(i, j, k) = valueAt(source, source.grid.toIndex(grid.toWorld(Vector(i, j, k))));
-      }
-    }
+  return volumeBy(grid, [&](const Vector& index) {
+    return valueAt(source, source.grid.toIndex(grid.toWorld(index)));
   });
-  return result;
 }
 
 Volume<float> inCubes(const Volume<float>& volume, double spacing) {

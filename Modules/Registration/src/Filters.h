@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/Volume.h"
-
-#include <functional>
 
 namespace explica::registration {
 
@@ -18,8 +17,23 @@ namespace explica::registration {
 /// Trilinear value at a continuous index; `outside` beyond half a voxel from the voxels.
 [[nodiscard]] float valueAt(const Volume<float>& volume, const Vector& index, float outside = 0);
 
-/// Calls `work` for each plane k of the grid, in parallel.
-void forPlanes(const Grid& grid, const std::function<void(int k)>& work);
+/// Calls work(i, j, k) for each voxel of the grid, planes in parallel.
+template <class Work>
+void forLattice(const Grid& grid, const Work& work) {
+  parallelFor(static_cast<std::size_t>(grid.size[2]), 1, [&](std::size_t k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i) work(i, j, static_cast<int>(k));
+    }
+  });
+}
+
+/// The volume that has value(index) at each voxel.
+template <class Value>
+[[nodiscard]] Volume<float> volumeBy(const Grid& grid, const Value& value) {
+  Volume<float> volume(grid);
+  forLattice(grid, [&](int i, int j, int k) { volume(i, j, k) = value(Vector(i, j, k)); });
+  return volume;
+}
 
 /// Grid of cubes of this size along the axes of another, over a box of continuous indices of it.
 [[nodiscard]] Grid cubicGrid(const Grid& like, const Vector& low, const Vector& high,

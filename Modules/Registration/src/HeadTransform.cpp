@@ -49,31 +49,20 @@ Point HeadTransform::operator()(const Point& inImage) const {
 
 Volume<float> pulled(const Volume<float>& inTemplate, const HeadTransform& transform,
                      const Grid& grid) {
-  Volume<float> result(grid);
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Point at = transform(grid.toWorld(Vector(i, j, k)));
-        result(i, j, k) = valueAt(inTemplate, inTemplate.grid.toIndex(at));
-      }
-    }
+  return volumeBy(grid, [&](const Vector& index) {
+    return valueAt(inTemplate, inTemplate.grid.toIndex(transform(grid.toWorld(index))));
   });
-  return result;
 }
 
 Volume<Label> pulled(const Volume<Label>& inTemplate, const HeadTransform& transform,
                      const Grid& grid) {
   Volume<Label> result(grid, 0);
-  forPlanes(grid, [&](int k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Vector at = inTemplate.grid.toIndex(transform(grid.toWorld(Vector(i, j, k))));
-        const int si = static_cast<int>(std::lround(at.x()));
-        const int sj = static_cast<int>(std::lround(at.y()));
-        const int sk = static_cast<int>(std::lround(at.z()));
-        if (inTemplate.grid.contains(si, sj, sk)) result(i, j, k) = inTemplate(si, sj, sk);
-      }
-    }
+  forLattice(grid, [&](int i, int j, int k) {
+    const Vector at = inTemplate.grid.toIndex(transform(grid.toWorld(Vector(i, j, k))));
+    const int si = static_cast<int>(std::lround(at.x()));
+    const int sj = static_cast<int>(std::lround(at.y()));
+    const int sk = static_cast<int>(std::lround(at.z()));
+    if (inTemplate.grid.contains(si, sj, sk)) result(i, j, k) = inTemplate(si, sj, sk);
   });
   return result;
 }

@@ -117,16 +117,11 @@ BrainMask stripSkull(const Volume<float>& image, const Volume<float>& brain,
   result.mask = Volume<Label>(image.grid, 0);
   result.doubt = Volume<float>(image.grid, 0.0f);
   constexpr float kOutside = 1e6f;
-  const auto& n = image.grid.size;
-  forPlanes(image.grid, [&](int k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        const Vector at = grid.toIndex(image.grid.toWorld(Vector(i, j, k)));
-        const float here = valueAt(distance, at, kOutside);
-        result.mask(i, j, k) = here < 0 ? 1 : 0;
-        if (std::abs(here) < kSpreading) result.doubt(i, j, k) = valueAt(deviation, at);
-      }
-    }
+  forLattice(image.grid, [&](int i, int j, int k) {
+    const Vector at = grid.toIndex(image.grid.toWorld(Vector(i, j, k)));
+    const float here = valueAt(distance, at, kOutside);
+    result.mask(i, j, k) = here < 0 ? 1 : 0;
+    if (std::abs(here) < kSpreading) result.doubt(i, j, k) = valueAt(deviation, at);
   });
   return result;
 }

@@ -180,11 +180,8 @@ VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<L
 /// Visits the voxels that share a face with one.
 template <class Visit>
 void forNeighbours(const Grid& grid, std::size_t v, const Visit& visit) {
-  const auto at = grid.subscripts(v);
-  for (int n = 0; n < 6; ++n) {
-    auto next = at;
-    next[n / 2] += n % 2 == 0 ? -1 : 1;
-    if (grid.contains(next[0], next[1], next[2])) visit(grid.linear(next[0], next[1], next[2]));
+  for (const std::int64_t w : grid.neighbours(v)) {
+    if (w >= 0) visit(static_cast<std::size_t>(w));
   }
 }
 

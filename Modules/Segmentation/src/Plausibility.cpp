@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Segmentation/Plausibility.h"
 
-#include "Explica/Core/VoxelSets.h"
-
 #include "Explica/Core/Runs.h"
+#include "Explica/Core/Text.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace explica::segmentation {
@@ -25,13 +24,11 @@ constexpr Limit kLimits[] = {
      "measured: T1s 0.00 to 0.24, anatomical label maps 0.85 to 0.95"},
     {"thick-slices", "the longest edge of a voxel", "mm", 0, 5,
      "the image looks like a stack of thick slices, as of a heart; give a T1 of a head in voxels "
-     "of "
-     "about 1 mm",
+     "of about 1 mm",
      "cortex is 2.5 mm thick; stacks of hearts have 6 to 10 mm"},
     {"bright-fluid", "the skewness of brightness deep in the head", "", -1, 0.2,
      "the fluid is no darker than the rest, so the image looks like a T2 or a proton density "
-     "image; "
-     "give the T1 of the same person",
+     "image; give the T1 of the same person",
      "measured: three brains and eleven simulated heads with fields to 40 % -0.65 to 0.01; proton "
      "density images simulated from two label maps 0.13 to 0.34, of which some pass, T2s 0.62 to "
      "0.68"},
@@ -43,8 +40,7 @@ constexpr Limit kLimits[] = {
      "this does not look like a T1-weighted brain, whose white matter is bright and deep and whose "
      "fluid is dark and outside",
      "a T1 without fluid at its rim, stripped along the folds, has 3, bert 26; below 1 bright "
-     "tissue "
-     "lies outside"},
+     "tissue lies outside"},
     {"registration", "the agreement with the template", "", 0.6, 1,
      "the template did not reach the head; look at the outlines in the report, or give --atlas and "
      "--mask",
@@ -52,8 +48,7 @@ constexpr Limit kLimits[] = {
      "(Modules/Registration/README.md)"},
     {"stretch", "the template's longest over its shortest stretch onto the head", "", 1, 1.5,
      "a part of the head may be missing, over which the template was squeezed; look at the "
-     "outlines "
-     "in the report, or give --atlas",
+     "outlines in the report, or give --atlas",
      "breadth over length of heads is 0.7 to 0.9; measured: heads 1.00 to 1.20, half a brain 1.92 "
      "(Modules/Registration/README.md)"},
     {"brain-border", "the share of the brain's border beyond which tissue goes on", "", 0, 0.1,
@@ -98,12 +93,8 @@ constexpr Limit kLimits[] = {
 };
 
 std::string shortNumber(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  if (std::abs(value) >= 1000 && std::isfinite(value)) {
-    std::snprintf(text.data(), text.size(), "%.0f", value);
-  }
-  return text.data();
+  const bool large = std::abs(value) >= 1000 && std::isfinite(value);
+  return printed(large ? "%.0f" : "%.3g", value);
 }
 
 std::string rangeOf(const Limit& limit) {
@@ -123,24 +114,13 @@ std::string sentenceOf(const Limit& limit, double value) {
 
 template <class T>
 double shareOfEqualNeighbours(const Volume<T>& volume) {
-  const auto& n = volume.grid.size;
   std::int64_t pairs = 0;
   std::int64_t equal = 0;
-  const auto compare = [&](T a, T b) {
+  forContacts(volume, [&](T a, T b) {
     if (a == T{0} || b == T{0}) return;
     ++pairs;
     if (a == b) ++equal;
-  };
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        const T here = volume(i, j, k);
-        if (i + 1 < n[0]) compare(here, volume(i + 1, j, k));
-        if (j + 1 < n[1]) compare(here, volume(i, j + 1, k));
-        if (k + 1 < n[2]) compare(here, volume(i, j, k + 1));
-      }
-    }
-  }
+  });
   return pairs == 0 ? 0 : static_cast<double>(equal) / static_cast<double>(pairs);
 }
 
@@ -209,12 +189,9 @@ double greyAtMaskEdge(const Volume<Label>& tissues) {
   double outside = 0, fluid = 0;  // mm^2 of voxel faces
   for (std::size_t v = 0; v < tissues.size(); ++v) {
     if (tissues[v] != kGrey) continue;
-    const auto at = grid.subscripts(v);
+    const auto neighbours = grid.neighbours(v);
     for (int d = 0; d < 6; ++d) {
-      auto next = at;
-      next[d / 2] += d % 2 == 0 ? -1 : 1;
-      const bool inside = grid.contains(next[0], next[1], next[2]);
-      const Label other = inside ? tissues(next[0], next[1], next[2]) : Label{0};
+      const Label other = neighbours[d] < 0 ? Label{0} : tissues[neighbours[d]];
       const double area = grid.voxelVolume() / grid.spacing[d / 2];
       if (other == 0) outside += area;
       if (other == kCsf) fluid += area;

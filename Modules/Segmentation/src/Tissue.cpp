@@ -81,14 +81,10 @@ Brain packBrain(const Volume<float>& image, const Volume<Label>& mask) {
   brain.neighbours.resize(brain.size());
   brain.intensity.resize(brain.size());
   for (std::size_t b = 0; b < brain.size(); ++b) {
-    const auto at = grid.subscripts(brain.voxel[b]);
     brain.intensity[b] = image[brain.voxel[b]];
-    for (int n = 0; n < 6; ++n) {
-      auto next = at;
-      next[n / 2] += n % 2 == 0 ? -1 : 1;
-      brain.neighbours[b][n] = grid.contains(next[0], next[1], next[2])
-                                   ? packed[grid.linear(next[0], next[1], next[2])]
-                                   : kNone;
+    const auto neighbours = grid.neighbours(brain.voxel[b]);
+    for (std::size_t n = 0; n < neighbours.size(); ++n) {
+      brain.neighbours[b][n] = neighbours[n] < 0 ? kNone : packed[neighbours[n]];
     }
   }
   return brain;

@@ -29,24 +29,19 @@ struct Export {
   std::string suffix;  ///< after "sub-01_hemi-L"; '@' stands for the hemisphere
   std::string units;   ///< empty if none
   std::string description;
-  std::string space = {};  ///< of a template; empty: the person's own
   bool ofPerson = false;   ///< the name has no hemisphere
+  std::string space = {};  ///< of a template; empty: the person's own
 };
 
 // Names as sMRIPrep's: volumes of a person, surfaces and maps of a hemisphere.
 const std::vector<Export> kExports = {
-    {"segment", "brain_mask.nii.gz", "_desc-brain_mask.nii.gz", "", "brain", {}, true},
-    {"segment", "seg.nii.gz", "_dseg.nii.gz", "", "1 CSF, 2 grey matter, 3 white matter", {}, true},
-    {"segment", "gm.nii.gz", "_label-GM_probseg.nii.gz", "", "grey matter", {}, true},
-    {"segment", "wm.nii.gz", "_label-WM_probseg.nii.gz", "", "white matter", {}, true},
-    {"segment", "csf.nii.gz", "_label-CSF_probseg.nii.gz", "", "cerebrospinal fluid", {}, true},
-    {"segment",
-     "to_template.h5",
-     "_from-T1w_to-template_mode-image_xfm.h5",
-     "mm",
-     "ITK transform from points of the T1 to the template's",
-     {},
-     true},
+    {"segment", "brain_mask.nii.gz", "_desc-brain_mask.nii.gz", "", "brain", true},
+    {"segment", "seg.nii.gz", "_dseg.nii.gz", "", "1 CSF, 2 grey matter, 3 white matter", true},
+    {"segment", "gm.nii.gz", "_label-GM_probseg.nii.gz", "", "grey matter", true},
+    {"segment", "wm.nii.gz", "_label-WM_probseg.nii.gz", "", "white matter", true},
+    {"segment", "csf.nii.gz", "_label-CSF_probseg.nii.gz", "", "cerebrospinal fluid", true},
+    {"segment", "to_template.h5", "_from-T1w_to-template_mode-image_xfm.h5", "mm",
+     "ITK transform from points of the T1 to the template's", true},
     {"surface", "white.surf.gii", "_white.surf.gii", "mm", "white surface"},
     {"surface", "mid.surf.gii", "_midthickness.surf.gii", "mm", "surface at half depth"},
     {"surface", "pial.surf.gii", "_pial.surf.gii", "mm", "outer surface"},
@@ -82,13 +77,8 @@ const std::vector<Export> kExports = {
      "area ratio, angle change in degrees, edge strain"},
     {"thickness", "thickness.nii.gz", "_desc-harmonic_thickness.nii.gz", "mm",
      "length of the trajectory through each voxel"},
-    {"thickness",
-     "layers.nii.gz",
-     "_desc-layers@_dseg.nii.gz",
-     "",
-     "layers, counted from the white matter",
-     {},
-     true},
+    {"thickness", "layers.nii.gz", "_desc-layers@_dseg.nii.gz", "",
+     "layers, counted from the white matter", true},
 };
 
 /// Whether the BIDS schema has names such as an export's; surfaces and maps are not yet in it.
@@ -115,14 +105,13 @@ std::string ignoredText() {
 constexpr const char* kReadMe =
     "# Cortical surfaces, thickness and unfolded patches\n\n"
     "Made by Explica (`explica bids`). `sub-XX.html` leads to the reports on a person, "
-    "`index.html` "
-    "(after the group level) to those on all. In `sub-XX/anat`: tissues and brain mask of the T1; "
-    "of each hemisphere white, middle and pial surface, thickness, sulcal depth, curvature and "
-    "areas at their vertices, and the same at the vertices of a template; an unfolded patch. Each "
-    "file has a sidecar with its sources, unit and SHA-256. `descriptions.tsv` says what each "
-    "`desc-` means. `runs` holds every run with its records. Surfaces and maps have names as "
-    "sMRIPrep's, which the BIDS schema does not contain yet: `.bidsignore` lists these kinds of "
-    "file.\n";
+    "`index.html` (after the group level) to those on all. In `sub-XX/anat`: tissues and brain "
+    "mask of the T1; of each hemisphere white, middle and pial surface, thickness, sulcal depth, "
+    "curvature and areas at their vertices, and the same at the vertices of a template; an "
+    "unfolded patch. Each file has a sidecar with its sources, unit and SHA-256. "
+    "`descriptions.tsv` says what each `desc-` means. `runs` holds every run with its records. "
+    "Surfaces and maps have names as sMRIPrep's, which the BIDS schema does not contain yet: "
+    "`.bidsignore` lists these kinds of file.\n";
 
 /// The fixed ones, and maps on the template: "thickness_space-X_den-Y.shape.gii" becomes
 /// "_space-X_den-Y_thickness.shape.gii".
@@ -140,7 +129,7 @@ std::vector<Export> exportsOf(const fs::path& run) {
     const std::size_t begin = at + kSpace.size();
     all.push_back({"resample", name, entity + "_" + measure + std::string(kEnding),
                    measure == "area" ? "mm^2" : "mm", measure + " at the template's vertices",
-                   name.substr(begin, density - begin)});
+                   false, name.substr(begin, density - begin)});
   }
   return all;
 }

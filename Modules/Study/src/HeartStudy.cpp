@@ -269,10 +269,9 @@ std::string heartColumns(const std::vector<HeartRow>& rows) {
   }
   for (const std::string& name : segmentColumns(rows)) {
     const bool percent = name.ends_with("thickening");
-    columns[name] = {{"Description",
-                      "mean over columns of a segment of the American Heart "
-                      "Association's 17"},
-                     {"Units", percent ? "%" : "mm"}};
+    columns[name] = {
+        {"Description", "mean over columns of a segment of the American Heart Association's 17"},
+        {"Units", percent ? "%" : "mm"}};
   }
   return provenance::textOf(columns, 2) + "\n";
 }

@@ -162,8 +162,7 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +
          " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>, those of "
          "regions in <a href=\"study_regions.tsv\">study_regions.tsv</a> too, how each step went "
-         "in "
-         "<a href=\"study_internals.tsv\">study_internals.tsv</a>.</p>\n" +
+         "in <a href=\"study_internals.tsv\">study_internals.tsv</a>.</p>\n" +
          part + kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
          "</script>\n<script>" + kStudyScript + "</script>\n</body></html>\n";
 }

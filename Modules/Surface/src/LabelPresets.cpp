@@ -121,22 +121,10 @@ Labels presentOrFirst(const Ranges& ranges, const Histogram& histogram) {
 
 /// Faces between voxels of two labels.
 std::int64_t contactsOf(const Volume<Label>& labels, Label one, Label other) {
-  const auto& n = labels.grid.size;
   std::int64_t contacts = 0;
-  const auto meet = [&](Label a, Label b) {
+  forContacts(labels, [&](Label a, Label b) {
     contacts += (a == one && b == other) || (a == other && b == one);
-  };
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      for (int i = 0; i < n[0]; ++i) {
-        const Label here = labels(i, j, k);
-        if (here != one && here != other) continue;
-        if (i + 1 < n[0]) meet(here, labels(i + 1, j, k));
-        if (j + 1 < n[1]) meet(here, labels(i, j + 1, k));
-        if (k + 1 < n[2]) meet(here, labels(i, j, k + 1));
-      }
-    }
-  }
+  });
   return contacts;
 }
 

@@ -14,24 +14,10 @@
 namespace explica::surface {
 namespace {
 
-/// The voxels that share a face with one; -1 where the image ends.
-std::array<std::int64_t, 6> faceNeighbours(const Grid& grid, std::size_t v) {
-  const auto at = grid.subscripts(v);
-  std::array<std::int64_t, 6> found;
-  for (int n = 0; n < 6; ++n) {
-    auto next = at;
-    next[n / 2] += n % 2 == 0 ? -1 : 1;
-    found[n] = grid.contains(next[0], next[1], next[2])
-                   ? static_cast<std::int64_t>(grid.linear(next[0], next[1], next[2]))
-                   : -1;
-  }
-  return found;
-}
-
 float meanOfKnown(const Volume<float>& image, std::size_t v) {
   float sum = 0;
   int count = 0;
-  for (const std::int64_t w : faceNeighbours(image.grid, v)) {
+  for (const std::int64_t w : image.grid.neighbours(v)) {
     if (w < 0 || image[w] == 0) continue;
     sum += image[w];
     ++count;
@@ -44,7 +30,7 @@ std::vector<std::size_t> besides(const Volume<float>& image,
                                  const std::vector<std::size_t>& known) {
   std::vector<std::size_t> front;
   for (const std::size_t v : known) {
-    for (const std::int64_t w : faceNeighbours(image.grid, v)) {
+    for (const std::int64_t w : image.grid.neighbours(v)) {
       if (w >= 0 && image[w] == 0) front.push_back(static_cast<std::size_t>(w));
     }
   }

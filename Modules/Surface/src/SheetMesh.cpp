@@ -15,32 +15,6 @@ namespace {
 
 using geometry::MeshTopology;
 
-/// Pieces of faces joined by edges, numbered from 0, of faces that `counts` allows; -1 for others.
-std::vector<std::int32_t> edgePieces(const MeshTopology& topology,
-                                     const std::vector<std::uint8_t>& counts) {
-  std::vector<std::int32_t> piece(counts.size(), -1);
-  std::vector<std::int32_t> stack;
-  std::int32_t number = 0;
-  for (std::size_t start = 0; start < piece.size(); ++start) {
-    if (!counts[start] || piece[start] >= 0) continue;
-    piece[start] = number;
-    stack.push_back(static_cast<std::int32_t>(start));
-    while (!stack.empty()) {
-      const std::int32_t f = stack.back();
-      stack.pop_back();
-      for (int k = 0; k < 3; ++k) {
-        for (const std::int32_t g : topology.edgeFaces.row(topology.faceEdges(f, k))) {
-          if (g < 0 || !counts[g] || piece[g] >= 0) continue;
-          piece[g] = number;
-          stack.push_back(g);
-        }
-      }
-    }
-    ++number;
-  }
-  return piece;
-}
-
 std::vector<double> areasOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece) {
   std::vector<double> areas;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
@@ -84,30 +58,6 @@ bool markSmallFans(const MeshTopology& topology, std::int32_t v,
 
 }  // namespace
 
-std::vector<std::vector<std::int32_t>> rimsOf(const TriangleMesh& mesh) {
-  const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  std::vector<std::int32_t> next(mesh.vertexCount(), -1);
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      if (topology.edgeFaces(topology.faceEdges(f, k), 1) < 0) {
-        next[mesh.faces(f, k)] = mesh.faces(f, (k + 1) % 3);
-      }
-    }
-  }
-  std::vector<std::vector<std::int32_t>> rims;
-  std::vector<std::uint8_t> seen(next.size(), 0);
-  for (std::size_t v = 0; v < next.size(); ++v) {
-    if (next[v] < 0 || seen[v]) continue;
-    std::vector<std::int32_t> rim;
-    for (auto w = static_cast<std::int32_t>(v); w >= 0 && !seen[w]; w = next[w]) {
-      seen[w] = 1;
-      rim.push_back(w);
-    }
-    rims.push_back(std::move(rim));
-  }
-  return rims;
-}
-
 TriangleMesh withoutFaces(const TriangleMesh& mesh, const std::vector<std::uint8_t>& marked) {
   std::vector<std::int32_t> kept;
   for (std::size_t f = 0; f < marked.size(); ++f) {
@@ -145,8 +95,7 @@ TriangleMesh withoutPinches(const TriangleMesh& given) {
 
 Pieces largePieces(const TriangleMesh& mesh, double least) {
   const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  const std::vector<std::int32_t> piece =
-      edgePieces(topology, std::vector<std::uint8_t>(mesh.faceCount(), 1));
+  const auto piece = geometry::facePieces(topology, std::vector<bool>(mesh.faceCount(), true));
   const std::vector<double> areas = areasOf(mesh, piece);
   if (!areas.empty()) least = std::min(least, *std::max_element(areas.begin(), areas.end()));
   std::vector<std::uint8_t> marked(mesh.faceCount());
@@ -158,7 +107,7 @@ Pieces largePieces(const TriangleMesh& mesh, double least) {
 std::vector<std::uint8_t> largePatches(const TriangleMesh& mesh, std::vector<std::uint8_t> marked,
                                        double least) {
   const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  const std::vector<std::int32_t> piece = edgePieces(topology, marked);
+  const auto piece = geometry::facePieces(topology, {marked.begin(), marked.end()});
   const std::vector<double> areas = areasOf(mesh, piece);
   for (std::size_t f = 0; f < marked.size(); ++f) {
     if (marked[f]) marked[f] = areas[piece[f]] >= least;
@@ -169,7 +118,7 @@ std::vector<std::uint8_t> largePatches(const TriangleMesh& mesh, std::vector<std
 Closed withHolesClosed(const TriangleMesh& mesh, double longest,
                        const std::function<bool(const std::vector<std::int32_t>&)>& keep) {
   std::vector<std::vector<std::int32_t>> holes;
-  for (auto& rim : rimsOf(mesh)) {
+  for (auto& rim : geometry::boundaryLoops(mesh.faces, mesh.vertexCount())) {
     double length = 0;
     for (std::size_t k = 0; k < rim.size(); ++k) {
       length += (mesh.positions.row(rim[k]) - mesh.positions.row(rim[(k + 1) % rim.size()])).norm();

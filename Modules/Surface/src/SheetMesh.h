@@ -10,9 +10,6 @@
 
 namespace explica::surface {
 
-/// The rims of a manifold: each a closed line of vertices, the surface on the left of it.
-[[nodiscard]] std::vector<std::vector<std::int32_t>> rimsOf(const TriangleMesh& mesh);
-
 /// The mesh without the marked faces, and without vertices that no face is left at.
 [[nodiscard]] TriangleMesh withoutFaces(const TriangleMesh& mesh,
                                         const std::vector<std::uint8_t>& marked);

@@ -344,7 +344,7 @@ void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd
   const auto topology = geometry::buildTopology(sheet.faces, sheet.vertexCount());
   std::vector<std::int32_t> nearest(sheet.vertexCount(), -1);
   std::deque<std::int32_t> waiting;
-  const auto rims = rimsOf(sheet);
+  const auto rims = geometry::boundaryLoops(sheet.faces, sheet.vertexCount());
   facts.rims = static_cast<std::int64_t>(rims.size());
   for (const auto& rim : rims) {
     for (const std::int32_t v : rim) {

@@ -4,6 +4,7 @@
 #include "Explica/Unfolding/Account.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/FaceCrossing.h"
 #include "Explica/Geometry/MeshMeasures.h"
 
@@ -11,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 #include <set>
@@ -117,9 +117,7 @@ std::string evolutionTable(const std::vector<IterationRecord>& history) {
   for (const IterationRecord& row : history) {
     table += std::to_string(row.iteration) + "\t" + std::string(nameOf(row.phase));
     for (const EvolutionColumn& column : evolutionColumns()) {
-      char text[40];
-      std::snprintf(text, sizeof text, column.format, column.of(row));
-      table += "\t" + std::string(text);
+      table += "\t" + printed(column.format, column.of(row));
     }
     table += "\n";
   }
@@ -148,11 +146,9 @@ std::string crossingTable(const TriangleMesh& mesh, std::span<const Crossing> cr
   std::string table = "face_1\tface_2\tvertices_1\tvertices_2\tx\ty\tz\tfaces_in_region\tparted\n";
   for (const Crossing& c : crossings) {
     const auto f = mesh.faces.row(c.faces[0]), g = mesh.faces.row(c.faces[1]);
-    char line[320];
-    std::snprintf(line, sizeof line, "%d\t%d\t%d,%d,%d\t%d,%d,%d\t%.4f\t%.4f\t%.4f\t%d\t%s\n",
-                  c.faces[0], c.faces[1], f[0], f[1], f[2], g[0], g[1], g[2], c.place[0],
-                  c.place[1], c.place[2], c.facesInRegion, c.parted ? "yes" : "no");
-    table += line;
+    table += printed("%d\t%d\t%d,%d,%d\t%d,%d,%d\t%.4f\t%.4f\t%.4f\t%d\t%s\n", c.faces[0],
+                     c.faces[1], f[0], f[1], f[2], g[0], g[1], g[2], c.place[0], c.place[1],
+                     c.place[2], c.facesInRegion, c.parted ? "yes" : "no");
   }
   return table;
 }
@@ -167,12 +163,11 @@ void requireFitsSingle(const TriangleMesh& mesh, std::string_view name) {
   const double edge = geometry::meanEdgeLength(mesh);
   const double step = farthest * std::numeric_limits<float>::epsilon();
   if (step <= kCoarsest * edge) return;
-  char text[240];
-  std::snprintf(text, sizeof text,
-                ": coordinates reach %.3g mm, where single precision, in which files keep them, "
-                "steps by %.2g mm beside edges of %.2g mm; move the surface nearer to the origin",
-                farthest, step, edge);
-  throw InvalidInput(std::string(name) + text);
+  throw InvalidInput(
+      std::string(name) +
+      printed(": coordinates reach %.3g mm, where single precision, in which files keep them, "
+              "steps by %.2g mm beside edges of %.2g mm; move the surface nearer to the origin",
+              farthest, step, edge));
 }
 
 double backfacingShare(const TriangleMesh& mesh, std::span<const std::int32_t> faces,

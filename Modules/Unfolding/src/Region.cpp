@@ -118,8 +118,7 @@ Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked)
   if (loops == 0) {
     throw InvalidInput(
         "region: it is a whole closed surface, whose average visibility is zero from any "
-        "viewpoint; "
-        "choose a part of it");
+        "viewpoint; choose a part of it");
   }
   region.holes = std::max(0, loops - region.pieces);
   return region;

@@ -7,12 +7,12 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Stopwatch.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Unfolding/Continuation.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace explica::unfolding {
 namespace {
@@ -47,10 +47,9 @@ void requirePositive(double visibility) {
 }
 
 void tellProgress(const Monitor& monitor, const IterationRecord& now, double initial, double goal) {
-  char line[96];
-  std::snprintf(line, sizeof line, "iteration %d: visibility %.4f, area error %.2f %%",
-                now.iteration, now.visibility, 100 * now.areaErrorMean);
-  monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0), line);
+  monitor.progress(std::clamp((now.visibility - initial) / (goal - initial), 0.0, 1.0),
+                   printed("iteration %d: visibility %.4f, area error %.2f %%", now.iteration,
+                           now.visibility, 100 * now.areaErrorMean));
 }
 
 /// Whether it pays to go back from a state.
@@ -110,32 +109,27 @@ double goalOf(const UnfoldOptions& options) {
 /// Says which goals are missed, and by how much.
 void sayWhatIsShort(const UnfoldOptions& options, const IterationRecord& kept, double seen,
                     const Monitor& monitor) {
-  char text[240];
   const double goal = goalOf(options);
   if (kept.visibility < goal) {
-    std::snprintf(text, sizeof text, "the visibility is %.4f, %.4f short of its goal of %g%s",
-                  kept.visibility, goal - kept.visibility, goal,
-                  options.unfolder.surround == Surround::Fixed
-                      ? ": fixed surroundings leave the region no room; with --surround elastic a "
-                        "collar follows, and it opens further"
-                      : "");
-    monitor.warn(text);
+    monitor.warn(
+        printed("the visibility is %.4f, %.4f short of its goal of %g%s", kept.visibility,
+                goal - kept.visibility, goal,
+                options.unfolder.surround == Surround::Fixed
+                    ? ": fixed surroundings leave the region no room; with --surround elastic a "
+                      "collar follows, and it opens further"
+                    : ""));
   }
   const double toSee = std::min(goal, kGoalSeen);
   if (seen < toSee) {
-    std::snprintf(
-        text, sizeof text,
-        "%.4f of the region's area can be seen from the viewpoint, %.4f short of its goal "
-        "of %g",
-        seen, toSee - seen, toSee);
-    monitor.warn(text);
+    monitor.warn(
+        printed("%.4f of the region's area can be seen from the viewpoint, %.4f short of its goal "
+                "of %g",
+                seen, toSee - seen, toSee));
   }
   if (kept.edgeStrainMean > kGoalStrain) {
-    std::snprintf(text, sizeof text,
-                  "edges are strained by %.2f %% in the mean, %.2f %% beyond their goal of %g %%",
-                  100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain),
-                  100 * kGoalStrain);
-    monitor.warn(text);
+    monitor.warn(printed(
+        "edges are strained by %.2f %% in the mean, %.2f %% beyond their goal of %g %%",
+        100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain), 100 * kGoalStrain));
   }
 }
 
@@ -163,19 +157,16 @@ void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
            UnfoldResult& result) {
   const IterationRecord& kept = result.history[static_cast<std::size_t>(result.iteration)];
   const IterationRecord& last = result.history.back();
-  char text[240];
   if (result.termination == Termination::TargetReached &&
       last.areaErrorMean > options.areaTolerance) {
     monitor.warn("the visibility is reached, but the mean area error stays at " +
                  std::to_string(last.areaErrorMean));
   }
   if (result.iteration != last.iteration) {
-    std::snprintf(
-        text, sizeof text,
-        "the run ended at a visibility of %.3f, worse than the best state seen; that one, "
-        "of iteration %d at %.3f, is kept",
-        last.visibility, result.iteration, kept.visibility);
-    monitor.warn(text);
+    monitor.warn(
+        printed("the run ended at a visibility of %.3f, worse than the best state seen; that one, "
+                "of iteration %d at %.3f, is kept",
+                last.visibility, result.iteration, kept.visibility));
   }
   result.flag = flagOf(options, result, kept, seen);
   if (result.flag == Flag::Worse) {

@@ -81,12 +81,9 @@ double openShareOf(const Volume<Label>& heart) {
         Faces sum;
         for (std::size_t v = begin; v < end; ++v) {
           if (heart[v] != kCavity) continue;
-          const auto at = grid.subscripts(v);
+          const auto neighbours = grid.neighbours(v);
           for (int d = 0; d < 6; ++d) {
-            auto next = at;
-            next[d / 2] += d % 2 == 0 ? -1 : 1;
-            const bool inside = next[d / 2] >= 0 && next[d / 2] < grid.size[d / 2];
-            const Label other = inside ? heart(next[0], next[1], next[2]) : kOutside;
+            const Label other = neighbours[d] < 0 ? kOutside : heart[neighbours[d]];
             if (other == kCavity) continue;
             sum.all += area[d / 2];
             if (other != kWall) sum.open += area[d / 2];

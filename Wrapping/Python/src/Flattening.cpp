@@ -12,8 +12,6 @@
 #include "Explica/Flattening/Flatten.h"
 #include "Explica/Flattening/FoldDepth.h"
 
-#include <numeric>
-
 namespace explica::python {
 namespace {
 
@@ -21,13 +19,9 @@ using namespace py::literals;
 
 std::vector<std::int32_t> listed(const TriangleMesh& mesh,
                                  const std::optional<std::vector<std::int32_t>>& faces) {
-  if (faces) {
-    requireFaces(mesh, *faces, "region");
-    return *faces;
-  }
-  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
+  if (!faces) return mesh.allFaces();
+  requireFaces(mesh, *faces, "region");
+  return *faces;
 }
 
 void bindFlatMaps(py::module_& m) {

@@ -34,39 +34,31 @@ py::dict conditionOf(const geometry::MeshCondition& c) {
       "closed_manifold"_a = c.closedManifold());
 }
 
+/// Binds a measure of a whole surface.
+template <auto measure>
+void defOfMesh(py::module_& m, const char* name, const char* doc) {
+  m.def(
+      name,
+      [](const PositionsIn& positions, const FacesIn& faces) {
+        return measure(meshOf(positions, faces));
+      },
+      py::arg("positions"), py::arg("faces"), doc);
+}
+
 /// Areas, normals and the volume.
 void bindMeasures(py::module_& m) {
-  const auto p = py::arg("positions"), f = py::arg("faces");
-  m.def(
-      "face_areas",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::faceAreas(meshOf(positions, faces));
-      },
-      p, f, "Area of each face, mm^2, shape (F,), of positions (V, 3) in mm and faces (F, 3).");
-  m.def(
-      "vertex_areas",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::vertexAreas(meshOf(positions, faces));
-      },
-      p, f, "A third of the areas of the faces at each vertex, mm^2, shape (V,).");
-  m.def(
-      "vertex_normals",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::vertexNormals(meshOf(positions, faces));
-      },
-      p, f, "Area-weighted outward unit normals, shape (V, 3).");
-  m.def(
-      "face_normals",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::faceNormalVectors(meshOf(positions, faces));
-      },
-      p, f, "Outward normal of each face, twice its area long, shape (F, 3), mm^2.");
-  m.def(
-      "enclosed_volume",
-      [](const PositionsIn& positions, const FacesIn& faces) {
-        return geometry::enclosedVolume(meshOf(positions, faces));
-      },
-      p, f, "Signed volume of a closed surface, mm^3; positive if faces are outward.");
+  defOfMesh<geometry::faceAreas>(
+      m, "face_areas",
+      "Area of each face, mm^2, shape (F,), of positions (V, 3) in mm and faces (F, 3).");
+  defOfMesh<geometry::vertexAreas>(
+      m, "vertex_areas", "A third of the areas of the faces at each vertex, mm^2, shape (V,).");
+  defOfMesh<geometry::vertexNormals>(m, "vertex_normals",
+                                     "Area-weighted outward unit normals, shape (V, 3).");
+  defOfMesh<geometry::faceNormalVectors>(
+      m, "face_normals", "Outward normal of each face, twice its area long, shape (F, 3), mm^2.");
+  defOfMesh<geometry::enclosedVolume>(
+      m, "enclosed_volume",
+      "Signed volume of a closed surface, mm^3; positive if faces are outward.");
 }
 
 /// What makes a surface usable or not.

@@ -9,19 +9,11 @@
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
-#include <numeric>
-
 namespace explica::python {
 namespace {
 
 using namespace py::literals;
 using visibility::Viewpoints;
-
-std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 }  // namespace
 
@@ -33,7 +25,7 @@ void bindVisibility(py::module_& m) {
          std::optional<std::vector<std::int32_t>> region) {
         const TriangleMesh mesh = meshOf(positions, faces);
         auto value = unlocked([&] {
-          return visibility::AverageVisibility(mesh.faces, region ? *region : everyFace(mesh),
+          return visibility::AverageVisibility(mesh.faces, region ? *region : mesh.allFaces(),
                                                viewpoints)
               .evaluate(mesh.positions);
         });

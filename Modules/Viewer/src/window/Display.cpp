@@ -28,8 +28,7 @@ void requireDisplay() {
     throw EnvironmentError(
         "no window can be opened: " +
         (name.empty() ? "DISPLAY is not set" : "the display '" + name + "' does not answer") +
-        "; use --screenshot, which needs none, or log in with a display (ssh "
-        "-X)");
+        "; use --screenshot, which needs none, or log in with a display (ssh -X)");
   }
   XCloseDisplay(display);
 }

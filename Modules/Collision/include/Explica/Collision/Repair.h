@@ -18,15 +18,9 @@ struct RepairOptions {
 };
 
 /// One surface of a repair.
-struct RepairedSurface {
-  Positions positions;                     ///< V x 3; vertices that did not move keep their bits
-  std::vector<geometry::FacePair> before;  ///< intersecting pairs of the input, sorted
-  std::vector<geometry::FacePair> after;   ///< those that are left, sorted
-  std::vector<std::int32_t> moved;         ///< vertices, ascending
-  double moveMax = 0;                      ///< mm
-  double moveMean = 0;                     ///< mm, of the moved vertices
-  std::size_t putBackFar = 0;              ///< groups that would have moved farther than allowed
-  std::size_t putBackOther = 0;            ///< groups that would have met another of the surfaces
+struct RepairedSurface : Untangling {
+  std::size_t putBackFar = 0;    ///< groups that would have moved farther than allowed
+  std::size_t putBackOther = 0;  ///< groups that would have met another of the surfaces
 };
 
 /// Parts the self-intersections of surfaces with the same faces, each by itself, as untangle();

@@ -22,10 +22,13 @@ struct UntangleOptions {
 struct Untangling {
   Positions positions;                     ///< V x 3; vertices that did not move keep their bits
   std::vector<geometry::FacePair> before;  ///< of the input, sorted
-  std::vector<geometry::FacePair> after;   ///< a part of `before`
+  std::vector<geometry::FacePair> after;   ///< those that are left, sorted
   std::vector<std::int32_t> moved;         ///< vertices, ascending
   double moveMax = 0;                      ///< mm
   double moveMean = 0;                     ///< mm, of the moved vertices
+
+  /// Lists the vertices that are not where they were, and measures how far they moved.
+  void noteMoves(const Positions& start);
 };
 
 /// Separates faces that intersect by moving few vertices a little.

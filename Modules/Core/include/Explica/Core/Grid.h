@@ -34,6 +34,19 @@ struct Grid {
     return {static_cast<int>(linearIndex % size[0]), static_cast<int>(row % size[1]),
             static_cast<int>(row / size[1])};
   }
+  /// Positions of the voxels that share a face with one: below and above along each axis; -1 where
+  /// the grid ends.
+  [[nodiscard]] std::array<std::int64_t, 6> neighbours(std::size_t linearIndex) const {
+    const std::array<int, 3> at = subscripts(linearIndex);
+    std::array<std::int64_t, 6> found;
+    std::int64_t stride = 1;
+    for (int axis = 0; axis < 3; stride *= size[axis++]) {
+      const auto here = static_cast<std::int64_t>(linearIndex);
+      found[2 * axis] = at[axis] > 0 ? here - stride : -1;
+      found[2 * axis + 1] = at[axis] + 1 < size[axis] ? here + stride : -1;
+    }
+    return found;
+  }
   [[nodiscard]] bool contains(int i, int j, int k) const {
     return i >= 0 && j >= 0 && k >= 0 && i < size[0] && j < size[1] && k < size[2];
   }

@@ -7,7 +7,8 @@
 
 namespace explica {
 
-/// Text as it may stand in HTML and SVG, attributes too: &, <, >, both quotes replaced.
-[[nodiscard]] std::string escapeHtml(std::string_view text);
+/// Text as it may stand in HTML, SVG and XML, attributes too: some of &, <, >, both quotes
+/// replaced.
+[[nodiscard]] std::string escapeHtml(std::string_view text, std::string_view escaped = "&<>\"'");
 
 }  // namespace explica

@@ -4,6 +4,10 @@
 
 #include "Explica/Core/Types.h"
 
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
 namespace explica {
 
 /// A triangulated surface: vertex positions and faces that index them.
@@ -18,6 +22,12 @@ struct TriangleMesh {
   [[nodiscard]] Eigen::Index faceCount() const { return faces.rows(); }
   [[nodiscard]] Point corner(Eigen::Index face, int k) const {
     return positions.row(faces(face, k)).transpose();
+  }
+  /// The number of every face, in order.
+  [[nodiscard]] std::vector<std::int32_t> allFaces() const {
+    std::vector<std::int32_t> all(static_cast<std::size_t>(faceCount()));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
   }
 };
 

@@ -27,4 +27,20 @@ struct Volume {
   [[nodiscard]] std::size_t size() const { return data.size(); }
 };
 
+/// Calls visit(a, b) with the values of every two voxels that share a face, the lower one first.
+template <class T, class Visit>
+void forContacts(const Volume<T>& volume, const Visit& visit) {
+  const auto& n = volume.grid.size;
+  for (int k = 0; k < n[2]; ++k) {
+    for (int j = 0; j < n[1]; ++j) {
+      for (int i = 0; i < n[0]; ++i) {
+        const T here = volume(i, j, k);
+        if (i + 1 < n[0]) visit(here, volume(i + 1, j, k));
+        if (j + 1 < n[1]) visit(here, volume(i, j + 1, k));
+        if (k + 1 < n[2]) visit(here, volume(i, j, k + 1));
+      }
+    }
+  }
+}
+
 }  // namespace explica

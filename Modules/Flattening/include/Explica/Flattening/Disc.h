@@ -36,8 +36,4 @@ struct Disc {
 /// @throws InvalidInput  no rim; several pieces; handles
 void findLoops(Disc& disc);
 
-/// Boundary loops of an oriented manifold, each in the direction of its faces; the one of the
-/// smallest vertex first.
-[[nodiscard]] std::vector<Loop> boundaryLoops(const Faces& faces, Eigen::Index vertexCount);
-
 }  // namespace explica::flattening

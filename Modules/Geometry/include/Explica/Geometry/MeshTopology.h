@@ -77,6 +77,16 @@ MeshCondition requireClosedManifold(const TriangleMesh& mesh, std::string_view n
 [[nodiscard]] std::vector<std::int32_t> faceComponents(const Faces& faces,
                                                        Eigen::Index vertexCount);
 
+/// Piece of each chosen face, numbered from 0 in the order of their first faces; chosen faces
+/// belong together if they share an edge.  -1 for the others.
+[[nodiscard]] std::vector<std::int32_t> facePieces(const MeshTopology& topology,
+                                                   const std::vector<bool>& chosen);
+
+/// Boundary loops of an oriented manifold, each in the direction of its faces; the one of the
+/// smallest vertex first.
+[[nodiscard]] std::vector<std::vector<std::int32_t>> boundaryLoops(const Faces& faces,
+                                                                   Eigen::Index vertexCount);
+
 /// The faces listed, on their own vertices only.
 struct SubMesh {
   TriangleMesh mesh;
