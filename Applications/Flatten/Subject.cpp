@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numeric>
 
 namespace explica::app {
 namespace {
@@ -40,7 +39,7 @@ std::optional<std::filesystem::path> recordedOriginal(const std::filesystem::pat
 
 std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s,
                                       const TriangleMesh& mesh) {
-  const auto all = everyFace(mesh.faces);
+  const auto all = flattening::everyFace(mesh.faces);
   if (*s.cuts == kAutomatic) {
     const bool closed = flattening::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
     if (!s.labels.empty() || !closed) return all;
@@ -68,12 +67,6 @@ std::vector<std::int32_t> facesOfCuts(Context& context, const FlattenSettings& s
 
 }  // namespace
 
-std::vector<std::int32_t> everyFace(const Faces& faces) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(faces.rows()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std::string& name) {
   if (a.vertexCount() == b.vertexCount()) return;
   throw InvalidInput("'" + name + "': has " + std::to_string(a.vertexCount()) +
@@ -94,7 +87,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     mesh.positions = reference.mesh.positions;
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
-  subject.faces = everyFace(mesh.faces);
+  subject.faces = flattening::everyFace(mesh.faces);
   if (s.cuts == kOfTemplate) {
     subject.cuts = readTemplateCuts(context, s, mesh);
     subject.faces = flattening::facesWithoutWall(mesh, subject.cuts->cortex);

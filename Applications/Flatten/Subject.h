@@ -23,8 +23,6 @@ struct Subject {
 /// @throws InvalidInput  files of different vertices, or no face left
 [[nodiscard]] Subject subjectOf(Context& context, const FlattenSettings& s);
 
-[[nodiscard]] std::vector<std::int32_t> everyFace(const Faces& faces);
-
 /// @throws InvalidInput  vertices differ in number
 void requireSameVertices(const TriangleMesh& a, const TriangleMesh& b, const std::string& name);
 

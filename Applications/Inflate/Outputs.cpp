@@ -7,6 +7,7 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
+#include "Explica/Flattening/Selection.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Inflation/Summary.h"
@@ -16,18 +17,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 
 namespace explica::app {
 namespace {
-
-constexpr double kDistanceWork = 3e5;  // vertices visited for the distance errors, about
-
-std::vector<std::int32_t> everyFace(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> all(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 visibility::SphereView lookAt(TriangleMesh mesh, const inflation::InflateOptions& options) {
   if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
@@ -38,7 +30,7 @@ void writeVisibility(Context& context, const Inflated& u, const inflation::Infla
                      inflation::InflateSummary& summary) {
   const visibility::SphereView before = lookAt(u.before, options);
   const visibility::SphereView after = lookAt(u.result.mesh, options);
-  const auto all = everyFace(u.before);
+  const auto all = flattening::everyFace(u.before.faces);
   const auto means = [&](const TriangleMesh& mesh, const Eigen::VectorXd& values) {
     return unfolding::vertexMeans(mesh, all, values, 0);
   };
@@ -55,8 +47,9 @@ void writeVisibility(Context& context, const Inflated& u, const inflation::Infla
 }
 
 void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
-  const auto all = everyFace(u.before);
+  const auto all = flattening::everyFace(u.before.faces);
   flattening::DistanceOptions options;
+  constexpr double kDistanceWork = 3e5;  // vertices visited, about
   options.sources = options.farSources = static_cast<int>(
       std::clamp(kDistanceWork / static_cast<double>(u.before.vertexCount() + 1), 10.0, 20.0));
   const auto pairs = flattening::drawPairs(u.before, all, options);
@@ -67,7 +60,7 @@ void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
 }
 
 unfolding::Distortion writeDistortion(Context& context, const Inflated& u) {
-  const auto all = everyFace(u.before);
+  const auto all = flattening::everyFace(u.before.faces);
   auto d = unfolding::measureDistortion(u.before, u.result.mesh.positions, all);
   const Eigen::VectorXd angleDeg = d.angleErrorRad * (180 / kPi);
   io::writeGiftiShape(

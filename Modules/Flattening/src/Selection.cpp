@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
 
 namespace explica::flattening {
@@ -19,6 +20,12 @@ std::array<std::int32_t, 3> sortedCorners(const Faces& faces, Eigen::Index f) {
 }
 
 }  // namespace
+
+std::vector<std::int32_t> everyFace(const Faces& faces) {
+  std::vector<std::int32_t> all(static_cast<std::size_t>(faces.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
 
 std::vector<std::int32_t> facesAlsoIn(const Faces& faces, std::span<const std::int32_t> listed,
                                       const Faces& others) {

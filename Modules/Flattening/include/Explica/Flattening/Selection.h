@@ -12,6 +12,9 @@ namespace explica::flattening {
 
 using VertexKeys = Eigen::Matrix<Label, Eigen::Dynamic, 1>;  ///< V
 
+/// The numbers of all rows of `faces`.
+[[nodiscard]] std::vector<std::int32_t> everyFace(const Faces& faces);
+
 /// Those of the listed rows of `faces` that `others` has, too: same three vertices in any order.
 [[nodiscard]] std::vector<std::int32_t> facesAlsoIn(const Faces& faces,
                                                     std::span<const std::int32_t> listed,

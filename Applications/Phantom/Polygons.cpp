@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
 #include "Explica/Application/Command.h"
 #include "Explica/IO/PolygonFile.h"
 #include "Explica/Planar/AngularSweep.h"
@@ -11,13 +9,14 @@
 #include <nlohmann/json.hpp>
 
 namespace explica::app {
+namespace {
 
 struct PolygonKindSettings {
   double spacing = 1;
 };
 
-inline void declareKind(Declaration& d, PolygonKindSettings& s, const char* synopsis,
-                        const char* example) {
+void declareKind(Declaration& d, PolygonKindSettings& s, const char* synopsis,
+                 const char* example) {
   d.synopsis(synopsis)
       .description(
           "A closed polygon whose upper side is folded, with the region and the viewpoint that "
@@ -27,8 +26,8 @@ inline void declareKind(Declaration& d, PolygonKindSettings& s, const char* syno
       .output("polygon.csv", FileKind::Polygon, "vertices in order, counter-clockwise");
 }
 
-inline Termination runKind(Context& context, const PolygonKindSettings& s,
-                           planar::PolygonPhantom phantom) {
+Termination runKind(Context& context, const PolygonKindSettings& s,
+                    planar::PolygonPhantom phantom) {
   if (!(s.spacing > 0)) throw UsageError("--spacing must be positive");
   auto step = context.step("generate");
   phantom.curve.positions *= s.spacing;
@@ -45,6 +44,33 @@ inline Termination runKind(Context& context, const PolygonKindSettings& s,
   context.result("flux_variance", visibility.variance);
   context.result("seen", planar::visiblePart(phantom.curve, region, phantom.viewpoint).fraction);
   return Termination::NotRun;
+}
+
+void declare19(Declaration& d, PolygonKindSettings& s) {
+  declareKind(d, s, "polygon with an intricate region of 19 edges",
+              "explica phantom polygon19 --out p19");
+}
+
+void declare34(Declaration& d, PolygonKindSettings& s) {
+  declareKind(d, s, "polygon with a highly convoluted region of 34 edges",
+              "explica phantom polygon34 --out p34");
+}
+
+template <planar::PolygonPhantom (*Make)()>
+Termination runWith(Context& context, const PolygonKindSettings& s) {
+  return runKind(context, s, Make());
+}
+
+}  // namespace
+
+Command phantomPolygon19Command() {
+  return makeCommand<PolygonKindSettings>("phantom polygon19", declare19,
+                                          runWith<planar::makePolygon19>);
+}
+
+Command phantomPolygon34Command() {
+  return makeCommand<PolygonKindSettings>("phantom polygon34", declare34,
+                                          runWith<planar::makePolygon34>);
 }
 
 }  // namespace explica::app
