@@ -5,6 +5,7 @@
 
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -42,9 +43,10 @@ void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t ver
   const Point nearest = mesh.positions.row(vertex);
   const double distance = (wanted - nearest).norm(), most = farthestCentre(extentOf(mesh));
   if (distance <= most) return;
-  throw InvalidInput("center: is " + text(distance) + " mm from the surface (limit " + text(most) +
-                     " mm); nearest vertex " + std::to_string(vertex) + " at " + text(nearest[0]) +
-                     "," + text(nearest[1]) + "," + text(nearest[2]));
+  throw InvalidInput(
+      printed("center: is %.1f mm from the surface (limit %g mm); nearest vertex %d at ", distance,
+              most, vertex) +
+      printed("%.1f,%.1f,%.1f", nearest[0], nearest[1], nearest[2]));
 }
 
 std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::int32_t centre,
