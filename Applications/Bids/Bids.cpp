@@ -42,7 +42,7 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
-struct Settings {
+struct BidsSettings {
   std::string dataset;
   std::string out;
   BidsLevel level = BidsLevel::Participant;
@@ -58,7 +58,7 @@ struct Settings {
 };
 
 /// The hemispheres to do, each once.
-std::vector<pipeline::RunHemisphere> sidesOf(const Settings& s) {
+std::vector<pipeline::RunHemisphere> sidesOf(const BidsSettings& s) {
   using pipeline::RunHemisphere;
   for (const RunHemisphere side : s.hemispheres) {
     if (side == RunHemisphere::Both) return {RunHemisphere::Left, RunHemisphere::Right};
@@ -67,14 +67,14 @@ std::vector<pipeline::RunHemisphere> sidesOf(const Settings& s) {
 }
 
 /// A name for the part of the work that the options ask for; empty for all of it.
-std::string shareOf(const Settings& s) {
+std::string shareOf(const BidsSettings& s) {
   if (s.level != BidsLevel::Participant) return {};
   std::vector<std::string> sides;
   for (const auto side : sidesOf(s)) sides.emplace_back(nameOf(side));
   return shareOfWork(s.participants, sides);
 }
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, BidsSettings& s) {
   d.synopsis("a BIDS data set, participant by participant, to a derivative and a study table")
       .description(
           R"(participant: takes each participant's segmentation, FreeSurfer subject or T1 (as the scanner gives it) through `explica run`, a hemisphere at a time, into OUT_DIR/runs, and copies the results to BIDS names with sidecars. Steps whose inputs and options have not changed, by content, are kept. A participant that fails, or whose numbers are implausible, does not stop the others: exit code 3, or 2 if all failed. group: writes from all runs, failed ones too, study.tsv and index.html, puts the people who are on a template together there, below group/ (who failed or is doubted is left out and named), and exports their records as BIDS-Prov. Several of these commands may work on one OUT_DIR at a time, as in a job array, on different participants.)")
@@ -122,7 +122,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 /// Both hemispheres of labels without sides would be the same volume, twice.
-void requireSides(const Settings& s, const study::Participant& participant) {
+void requireSides(const BidsSettings& s, const study::Participant& participant) {
   if (sidesOf(s).size() < 2) return;
   const study::SubjectFiles files = study::findSubjectFiles(participant.input);
   if (!files.labels || files.layout == study::SubjectLayout::FreeSurfer) return;
@@ -135,7 +135,7 @@ void requireSides(const Settings& s, const study::Participant& participant) {
 }
 
 /// How the template was placed in a participant's T1 by an earlier study.
-std::optional<fs::path> earlierRegistration(const Settings& s, const std::string& participant) {
+std::optional<fs::path> earlierRegistration(const BidsSettings& s, const std::string& participant) {
   if (!s.registrations) return {};
   for (const char* side : {"_hemi-L", "_hemi-R"}) {
     const fs::path file =
@@ -149,7 +149,7 @@ enum class Ended { Done, Failed, Interrupted };
 
 /// Takes one hemisphere through the run and names its results.  Why it failed is in problem.txt
 /// beside the run.
-Ended doHemisphere(Context& context, const Settings& s, const study::Participant& participant,
+Ended doHemisphere(Context& context, const BidsSettings& s, const study::Participant& participant,
                    pipeline::RunHemisphere side, Termination& worst) {
   const std::string hemisphere(nameOf(side));
   const std::string name = participant.name() + "_hemi-" + hemisphere;
@@ -210,7 +210,7 @@ void writePage(Context& context, const study::Participant& participant) {
 }
 
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.
-Termination doParticipants(Context& context, const Settings& s) {
+Termination doParticipants(Context& context, const BidsSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const auto participants = study::findParticipants(s.dataset, s.participants);
   if (!context.given("dry-run")) {
@@ -257,7 +257,7 @@ void writeExports(Context& context) {
   }
 }
 
-Termination doGroup(Context& context, const Settings& s) {
+Termination doGroup(Context& context, const BidsSettings& s) {
   const fs::path out = context.outputFolder();
   auto rows = study::collectRows(out);
   const std::string part = writeGroup(context, s.group, study::aboutParticipants(s.dataset), rows);
@@ -270,14 +270,14 @@ Termination doGroup(Context& context, const Settings& s) {
   return Termination::NotRun;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const BidsSettings& s) {
   return s.level == BidsLevel::Participant ? doParticipants(context, s) : doGroup(context, s);
 }
 
 }  // namespace
 
 Command bidsCommand() {
-  return makeCommand<Settings>("bids", declare, run);
+  return makeCommand<BidsSettings>("bids", declare, run);
 }
 
 }  // namespace explica::app

@@ -14,13 +14,13 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct CiftiSettings {
   std::optional<std::string> left, right, leftCortex, rightCortex;
   std::string name = "both";
   std::optional<double> seconds;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, CiftiSettings& s) {
   d.synopsis("maps or labels of both hemispheres in one CIFTI file")
       .description(
           R"(Joins the vertex data of the left and the right hemisphere, the medial wall left out, into a file for Workbench and what else reads CIFTI-2: .dscalar.nii of maps, .dtseries.nii of a series if --seconds says how far apart its frames are, .dlabel.nii of labels (GIFTI labels and FreeSurfer's annot). The cortex is where --left-cortex and --right-cortex are not 0: FreeSurfer's cortex.label, valid.shape.gii of explica sample, or any map; without them all vertices are in.)")
@@ -45,7 +45,7 @@ void declare(Declaration& d, Settings& s) {
       .output("*.dlabel.nii", FileKind::Any, "labels of both hemispheres with names and colours");
 }
 
-struct Side {
+struct CiftiSide {
   const char* structure;
   std::optional<std::string> data, cortex;
 };
@@ -55,7 +55,7 @@ bool isLabelFile(const std::string& path) {
          path.ends_with(".label.gii.gz");
 }
 
-io::CiftiStructure cortexOf(const Side& side, Eigen::Index vertexCount) {
+io::CiftiStructure cortexOf(const CiftiSide& side, Eigen::Index vertexCount) {
   if (!side.cortex) {
     return io::ciftiStructure(side.structure, Eigen::VectorXd::Ones(vertexCount));
   }
@@ -69,27 +69,27 @@ io::CiftiStructure cortexOf(const Side& side, Eigen::Index vertexCount) {
 
 /// Labels of the side; FreeSurfer's annots number both hemispheres alike, which is right where the
 /// names agree.
-io::CiftiLabels labelsOf(const Side& side) {
+io::CiftiLabels ciftiLabelsOf(const CiftiSide& side) {
   io::CiftiLabels part{{}, io::readVertexLabels(*side.data)};
   part.where = cortexOf(side, part.labels.keys.size());
   return part;
 }
 
-io::CiftiPart mapsOf(const Side& side) {
+io::CiftiPart mapsOf(const CiftiSide& side) {
   io::CiftiPart part{{}, io::readVertexMaps(*side.data)};
   part.where = cortexOf(side, part.maps.front().values.size());
   return part;
 }
 
 template <class Part>
-std::vector<Part> each(const std::vector<Side>& sides, Part (*read)(const Side&)) {
+std::vector<Part> each(const std::vector<CiftiSide>& sides, Part (*read)(const CiftiSide&)) {
   std::vector<Part> parts;
-  for (const Side& side : sides) parts.push_back(read(side));
+  for (const CiftiSide& side : sides) parts.push_back(read(side));
   return parts;
 }
 
-Termination run(Context& context, const Settings& s) {
-  std::vector<Side> sides;
+Termination run(Context& context, const CiftiSettings& s) {
+  std::vector<CiftiSide> sides;
   if (s.left) sides.push_back({"CortexLeft", s.left, s.leftCortex});
   if (s.right) sides.push_back({"CortexRight", s.right, s.rightCortex});
   if (sides.empty()) throw UsageError("give --left, --right, or both");
@@ -98,7 +98,7 @@ Termination run(Context& context, const Settings& s) {
   }
   if (s.seconds && !(*s.seconds > 0)) throw UsageError("--seconds must be positive");
   const bool labels = isLabelFile(*sides.front().data);
-  for (const Side& side : sides) {
+  for (const CiftiSide& side : sides) {
     if (isLabelFile(*side.data) != labels) {
       throw UsageError(
           "one hemisphere has labels and the other one maps; two of a kind are needed");
@@ -106,7 +106,7 @@ Termination run(Context& context, const Settings& s) {
   }
   const std::vector<io::CiftiPart> parts =
       labels ? std::vector<io::CiftiPart>() : each(sides, mapsOf);
-  const io::CiftiFile file = labels      ? io::ciftiLabels(each(sides, labelsOf))
+  const io::CiftiFile file = labels      ? io::ciftiLabels(each(sides, ciftiLabelsOf))
                              : s.seconds ? io::ciftiSeries(parts, *s.seconds)
                                          : io::ciftiScalars(parts);
   auto step = context.step("write");
@@ -120,7 +120,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command ciftiCommand() {
-  return makeCommand<Settings>("cifti", declare, run);
+  return makeCommand<CiftiSettings>("cifti", declare, run);
 }
 
 }  // namespace explica::app

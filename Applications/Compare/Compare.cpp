@@ -18,7 +18,7 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct CompareSettings {
   std::string before;
   std::vector<std::string> after;
   io::SurfaceReadOptions reading;
@@ -27,7 +27,7 @@ struct Settings {
   flattening::DistanceOptions distances;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, CompareSettings& s) {
   d.synopsis("area, length, angle and distance distortion of surfaces against a reference")
       .description(
           R"(Compares flat maps, inflated surfaces, spheres and unfolded surfaces with the surface that they came from, on the faces that all of them have. Area error, edge strain and angle change are means over faces and edges. Distances are measured on the reference along the surface, between the same pairs of vertices for all; on flat maps straight, on other surfaces along them; each kind of surface at the scale that suits it best. 'Turned over' and 'crossings' are exact. 'Seen' is the share of the area that rays reach: straight from above for a flat map, from all sides of an enclosing sphere for any other.
@@ -82,7 +82,7 @@ void draw(const std::filesystem::path& path, const TriangleMesh& reference,
       path, report::surfaceFigure(part.mesh, paint, views, static_cast<int>(views.size()), size));
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const CompareSettings& s) {
   const auto reference = readSurface(context, "BEFORE", s.before, s.reading);
   geometry::requireManifold(reference.mesh, s.before);
   std::vector<TriangleMesh> surfaces;
@@ -133,7 +133,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command compareCommand() {
-  return makeCommand<Settings>("compare", declare, run);
+  return makeCommand<CompareSettings>("compare", declare, run);
 }
 
 }  // namespace explica::app

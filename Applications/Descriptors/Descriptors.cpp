@@ -11,9 +11,9 @@
 namespace explica::app {
 namespace {
 
-struct Settings {};
+struct DescriptorsSettings {};
 
-void declare(Declaration& d, Settings&) {
+void declare(Declaration& d, DescriptorsSettings&) {
   d.synopsis("descriptions of every command for shells and man")
       .description(
           "All files are generated from the commands' own declarations, the same that parse the "
@@ -24,7 +24,7 @@ void declare(Declaration& d, Settings&) {
       .output("man/explica*.1", FileKind::Any, "manual pages");
 }
 
-Termination run(Context& context, const Settings&) {
+Termination run(Context& context, const DescriptorsSettings&) {
   const std::string& version = provenance::software().version;
   const Json commands = describeAllCommands();
   for (const Json& command : commands) {
@@ -42,7 +42,7 @@ Termination run(Context& context, const Settings&) {
 }  // namespace
 
 Command descriptorsCommand() {
-  return makeCommand<Settings>("descriptors", declare, run);
+  return makeCommand<DescriptorsSettings>("descriptors", declare, run);
 }
 
 }  // namespace explica::app

@@ -22,7 +22,7 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct EmbedSettings {
   std::vector<std::string> targets;
   bool fit = false;
   bool average = false;
@@ -34,7 +34,7 @@ struct Settings {
   shapes::ShapeFitOptions fitting;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, EmbedSettings& s) {
   d.synopsis("closed shapes as harmonic functions: fitted, averaged, combined")
       .description(
           R"(A closed curve or surface in an annulus is the 1/2 level of a harmonic function, and its coefficients can be averaged and combined: every convex combination is again one closed shape. Targets are polygons (CSV), label images (with --label-key), surfaces, or coefficients.json of an earlier run; all share one annulus between circles or spheres around the targets. Details finer than the distance to its boundaries cannot be met: a narrower annulus follows the targets more closely.)")
@@ -68,7 +68,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 /// A target as it was read: one of the three.
-struct Target {
+struct EmbedTarget {
   std::optional<shapes::HarmonicShape> shape;
   std::optional<planar::Curve> curve;
   std::optional<TriangleMesh> mesh;
@@ -76,8 +76,8 @@ struct Target {
   [[nodiscard]] int dimension() const { return shape ? shape->annulus.dimension : (curve ? 2 : 3); }
 };
 
-Target readTarget(Context& context, const std::string& path, const PolygonReading& reading) {
-  Target target;
+EmbedTarget readTarget(Context& context, const std::string& path, const PolygonReading& reading) {
+  EmbedTarget target;
   if (path.ends_with(".json")) {
     target.shape = readCoefficients(path);
   } else if (isPolygonTable(path)) {
@@ -90,15 +90,15 @@ Target readTarget(Context& context, const std::string& path, const PolygonReadin
   return target;
 }
 
-shapes::HarmonicAnnulus annulusFor(const Settings& s, const std::vector<Target>& targets,
+shapes::HarmonicAnnulus annulusFor(const EmbedSettings& s, const std::vector<EmbedTarget>& targets,
                                    const std::vector<shapes::TargetSamples>& samples) {
   const int dimension = targets.front().dimension();
-  for (const Target& t : targets) {
+  for (const EmbedTarget& t : targets) {
     if (t.dimension() != dimension) {
       throw InvalidInput("targets in the plane and in space cannot be mixed");
     }
   }
-  for (const Target& t : targets) {
+  for (const EmbedTarget& t : targets) {
     if (t.shape) return t.shape->annulus;  // for all
   }
   return shapes::annulusAround(samples, dimension, s.annulus);
@@ -115,7 +115,7 @@ void writeShape(Context& context, const std::string& stem, const shapes::Harmoni
 }
 
 /// Writes `frames` states of a fit, from the initial estimate on.
-void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit& fit) {
+void writeEvolution(Context& context, const EmbedSettings& s, const shapes::ShapeFit& fit) {
   const std::size_t last = fit.path.size() - 1;
   const std::size_t count = std::min<std::size_t>(static_cast<std::size_t>(s.frames), last + 1);
   for (std::size_t f = 0; f < count; ++f) {
@@ -130,7 +130,7 @@ void writeEvolution(Context& context, const Settings& s, const shapes::ShapeFit&
 }
 
 /// Distances both ways between the fitted shape and its target.
-void measureDistance(const shapes::HarmonicShape& shape, const Target& target, int grid,
+void measureDistance(const shapes::HarmonicShape& shape, const EmbedTarget& target, int grid,
                      shapes::EmbedSummary& summary) {
   shapes::LevelDistance there;
   shapes::LevelDistance back;
@@ -165,7 +165,7 @@ void appendRows(std::string& table, std::size_t target, const shapes::ShapeFit& 
 }
 
 /// Targets that are shapes already stay as they are; `samples` are of the others, in their order.
-Fits fitAll(Context& context, const Settings& s, const std::vector<Target>& targets,
+Fits fitAll(Context& context, const EmbedSettings& s, const std::vector<EmbedTarget>& targets,
             const std::vector<shapes::TargetSamples>& samples,
             const shapes::HarmonicAnnulus& annulus) {
   auto step = context.step("fit");
@@ -192,18 +192,18 @@ Fits fitAll(Context& context, const Settings& s, const std::vector<Target>& targ
   return fits;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const EmbedSettings& s) {
   const int asked = int{s.fit} + int{s.average} + int{!s.weights.empty()};
   if (asked > 1) throw UsageError("give one of --fit, --average and --combine");
   if (s.fit && s.targets.size() != 1) throw UsageError("--fit takes one target");
   if (s.grid < 16 || s.fitting.samples < 16 || s.frames < 0) {
     throw UsageError("--cells and --samples need at least 16, --frames at least 0");
   }
-  std::vector<Target> targets;
+  std::vector<EmbedTarget> targets;
   std::vector<shapes::TargetSamples> samples;
   for (const std::string& path : s.targets) {
     targets.push_back(readTarget(context, path, s.reading));
-    const Target& t = targets.back();
+    const EmbedTarget& t = targets.back();
     if (t.curve) samples.push_back(shapes::samplesOf(*t.curve, s.fitting.samples));
     if (t.mesh) samples.push_back(shapes::samplesOf(*t.mesh, s.fitting.samples));
   }
@@ -240,7 +240,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command embedCommand() {
-  return makeCommand<Settings>("embed", declare, run);
+  return makeCommand<EmbedSettings>("embed", declare, run);
 }
 
 }  // namespace explica::app

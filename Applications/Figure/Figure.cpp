@@ -36,7 +36,7 @@ constexpr auto enumWords(FigureLayout) {
 
 namespace {
 
-struct Settings {
+struct FigureSettings {
   std::vector<std::string> files;
   std::vector<FigureSide> views = {FigureSide::Lateral, FigureSide::Medial};
   FigureLayout layout = FigureLayout::Grid;
@@ -46,7 +46,7 @@ struct Settings {
   io::SurfaceReadOptions reading;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, FigureSettings& s) {
   d.synopsis("a figure for print: surfaces of both hemispheres, flat maps, one colour bar")
       .description(
           R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names. All surfaces have one scale, all maps one colour bar. figure.svg has a layer for the pictures, one for the titles and one for the colour bar, whose text can be edited.)")
@@ -143,7 +143,7 @@ void give(const std::string& file, std::vector<Shown>& all) {
                      "side");
 }
 
-std::vector<Shown> readFiles(const Settings& s) {
+std::vector<Shown> readFiles(const FigureSettings& s) {
   std::vector<Shown> all;
   std::vector<std::string> data;
   for (const std::string& file : s.files) {
@@ -172,7 +172,7 @@ std::string titleOf(const io::VertexMap& map) {
 }
 
 /// One scale for all maps; none without maps.
-std::optional<report::ColourScale> scaleOf(const Settings& s, const std::vector<Shown>& all) {
+std::optional<report::ColourScale> scaleOf(const FigureSettings& s, const std::vector<Shown>& all) {
   std::vector<double> pooled;
   const io::VertexMap* first = nullptr;
   for (const Shown& shown : all) {
@@ -236,7 +236,8 @@ report::Panel panelOf(const Shown& shown, const std::optional<FigureSide>& side)
 }
 
 /// Surfaces by the layout, flat maps in a row below.
-std::vector<std::vector<report::Panel>> rowsOf(const Settings& s, const std::vector<Shown>& all) {
+std::vector<std::vector<report::Panel>> rowsOf(const FigureSettings& s,
+                                               const std::vector<Shown>& all) {
   std::vector<std::vector<report::Panel>> rows;
   std::vector<report::Panel> flat;
   const bool grid = s.layout == FigureLayout::Grid, column = s.layout == FigureLayout::Column;
@@ -254,7 +255,7 @@ std::vector<std::vector<report::Panel>> rowsOf(const Settings& s, const std::vec
   return rows;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const FigureSettings& s) {
   std::vector<Shown> all = readFiles(s);
   const auto scale = scaleOf(s, all);
   for (Shown& shown : all) paint(shown, scale);
@@ -268,7 +269,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command figureCommand() {
-  return makeCommand<Settings>("figure", declare, run);
+  return makeCommand<FigureSettings>("figure", declare, run);
 }
 
 }  // namespace explica::app

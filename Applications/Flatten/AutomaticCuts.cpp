@@ -53,7 +53,7 @@ std::vector<bool> cortexOfFile(const std::filesystem::path& path, Eigen::Index v
   return cortex;
 }
 
-std::string nameOf(const std::vector<flattening::Cut>& cuts, std::size_t n) {
+std::string cutName(const std::vector<flattening::Cut>& cuts, std::size_t n) {
   return cuts[n].name.empty() ? "cut " + std::to_string(n + 1) : cuts[n].name;
 }
 
@@ -63,7 +63,7 @@ std::string tableOf(const flattening::Disc& disc, const std::vector<flattening::
     const flattening::Cut& cut = cuts[n];
     const Point end = disc.mesh.positions.row(cut.path.back());
     text += printed("%zu\t%s\t%d\t%d\t%zu\t%.2f\t%.3f\t%.2f\t%.2f\t%.2f\n", n + 1,
-                    nameOf(cuts, n).c_str(), disc.vertexOrigin[cut.path.front()],
+                    cutName(cuts, n).c_str(), disc.vertexOrigin[cut.path.front()],
                     disc.vertexOrigin[cut.path.back()], cut.path.size(), cut.length, cut.depth,
                     end.x(), end.y(), end.z());
   }
@@ -124,7 +124,7 @@ io::LabelMap labelsOf(const flattening::Disc& disc, const std::vector<flattening
   labels.table = {{0, "cortex", {0, 0, 0, 0}}, {1, "medial wall", {0.5F, 0.5F, 0.5F, 1}}};
   for (std::size_t n = 0; n < cuts.size(); ++n) {
     const auto key = static_cast<Label>(n + 2);
-    labels.table.push_back({key, nameOf(cuts, n), kColours[n % kColours.size()]});
+    labels.table.push_back({key, cutName(cuts, n), kColours[n % kColours.size()]});
     for (const std::int32_t v : cuts[n].path) {
       Label& at = labels.keys[disc.vertexOrigin[v]];
       if (at == 0) at = key;

@@ -23,9 +23,9 @@ namespace {
 
 constexpr double kPatchTolerance = 0.01;  // mean area error of a patch ...
 constexpr double kCutTolerance = 0.05;    // ... and of a hemisphere with cuts: less costs lengths
-constexpr const char* kStateFile = "flattening.state";
+constexpr const char* kFlatteningState = "flattening.state";
 
-void declareOutputs(Declaration& d) {
+void declareFlatOutputs(Declaration& d) {
   d.output("flat.surf.gii", FileKind::Surface,
            "the flat map, z = 0: all vertices in their order, the patch's faces (one bank of cuts)")
       .output("patch.surf.gii", FileKind::Surface,
@@ -52,7 +52,7 @@ void declareOutputs(Declaration& d) {
       .output("flat.png", FileKind::Picture, "the map with outlines, scale bar and colour bar")
       .output("frames/frame-*.surf.gii", FileKind::Surface,
               "--frames states on the way, vertices and faces as in flat.surf.gii")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .varyingOutput(kFlatteningState, FileKind::Any, "what --resume needs")
       .results<flattening::CutPlan>()
       .results<unfolding::FlatSummary>();
 }
@@ -156,7 +156,7 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .needs({"template", "cut-name", "sphere"}, {"cuts=template"})
       .needs({"depths"}, {"surfaces", "white"})
       .needs({"nearest"}, {"volumes"});
-  declareOutputs(d);
+  declareFlatOutputs(d);
 }
 
 using Clock = std::chrono::steady_clock;
@@ -198,9 +198,6 @@ void sayHowGood(Context& context, const flattening::FlatMap& map,
                            : ""));
 }
 
-// What comes after cuts and map, in times of the start, which reads one surface.
-constexpr double kRest = 3, kEachFrame = 0.5;
-
 /// The run from the opened surface on: its disc, its map, and what going on needs.
 struct Made {
   flattening::Disc disc;
@@ -218,7 +215,7 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
           const flattening::FlattenOptions& options) {
   const auto begin = Clock::now();
   std::optional<flattening::Checkpoint> from;
-  if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kStateFile);
+  if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kFlatteningState);
   Made made;
   made.state.uncut = flattening::sumOver(disc);
   if (s.cuts == kAutomatic) {
@@ -254,10 +251,12 @@ Termination run(Context& context, const FlattenSettings& s) {
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
+  // What comes after cuts and map, in times of the start, which reads one surface.
+  constexpr double kRest = 3, kEachFrame = 0.5;
   const TimeKept rest(read * (kRest + kEachFrame * options.frames));
   const Made made = make(context, s, subject, std::move(whole), options);
   const StopScope kept(nullptr);  // what is reached is written
-  flattening::writeCheckpoint(context.output(kStateFile), made.state);
+  flattening::writeCheckpoint(context.output(kFlatteningState), made.state);
   if (made.searching()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;

@@ -8,6 +8,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Flattening/PatchTable.h"
+#include "Explica/Flattening/Selection.h"
 #include "Explica/IO/PatchFile.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -25,8 +26,6 @@
 
 namespace explica::app {
 namespace {
-
-constexpr double kDistanceWork = 2e6;  // vertices visited for the distance errors, about
 
 /// Which vertices of the whole FreeSurfer's patch has: one place each, none on a cut, for its faces
 /// are all those between its vertices.
@@ -183,6 +182,7 @@ Eigen::VectorXd measure(Context& context, const Subject& subject, const flatteni
        {"angle change", "degrees", whole(unfolding::vertexMeans(before, all, angleDeg, 0), 0)},
        {"edge strain", "", whole(unfolding::vertexStrains(before, flat.positions, all), 0)}},
       subject.reference.metadata.structure);
+  constexpr double kDistanceWork = 2e6;  // vertices visited, about
   flattening::DistanceOptions options{
       .farSources = static_cast<int>(
           std::clamp(kDistanceWork / static_cast<double>(flat.faceCount() / 2 + 1), 20.0, 100.0))};

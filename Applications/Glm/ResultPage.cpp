@@ -37,16 +37,16 @@ Size sizeOfViews(const GlmResults& r) {
   return {width, width * 3 / 4};
 }
 
-struct Side {
+struct ShownSide {
   const Hemisphere* hemisphere;
   TriangleMesh mesh;
   TriangleMesh inflated = {};
 };
 
-std::vector<Side> sidesOf(const Observations& o) {
-  std::vector<Side> sides;
+std::vector<ShownSide> sidesOf(const Observations& o) {
+  std::vector<ShownSide> sides;
   for (const Hemisphere& h : o.hemispheres) {
-    Side side{&h, {o.surface->mesh.positions.middleRows(h.first, h.count), {}}};
+    ShownSide side{&h, {o.surface->mesh.positions.middleRows(h.first, h.count), {}}};
     const Faces& all = o.surface->mesh.faces;
     std::vector<std::int32_t> mine;
     for (Eigen::Index f = 0; f < all.rows(); ++f) {
@@ -62,12 +62,12 @@ std::vector<Side> sidesOf(const Observations& o) {
 }
 
 /// Lateral and medial pictures of each hemisphere.
-report::ReportViews viewsOf(const std::vector<Side>& sides, const Eigen::VectorXd& values,
+report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const Eigen::VectorXd& values,
                             const report::ColourScale& scale, double threshold, Size pixels) {
   report::ReportViews views;
   views.scale = scale;
   report::SurfacePictureOptions size{.width = pixels.width, .height = pixels.height};
-  for (const Side& side : sides) {
+  for (const ShownSide& side : sides) {
     std::vector<Colour> colours;
     for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {
       const double value = values[side.hemisphere->first + v];
@@ -106,7 +106,8 @@ Eigen::VectorXd meanOf(const GlmResults& r) {
   return (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
 }
 
-void addViews(const std::vector<Side>& sides, const GlmResults& r, report::ReportContent& page) {
+void addViews(const std::vector<ShownSide>& sides, const GlmResults& r,
+              report::ReportContent& page) {
   if (sides.empty()) return;
   const Size size = sizeOfViews(r);
   const Eigen::VectorXd mean = meanOf(r);
@@ -137,8 +138,9 @@ void addViews(const std::vector<Side>& sides, const GlmResults& r, report::Repor
 }
 
 /// The hemispheres that turn, inflated or as they are, with the maps of all contrasts.
-void addTurnable(const std::vector<Side>& sides, const GlmResults& r, report::ReportContent& page) {
-  for (const Side& side : sides) {
+void addTurnable(const std::vector<ShownSide>& sides, const GlmResults& r,
+                 report::ReportContent& page) {
+  for (const ShownSide& side : sides) {
     report::Evolution view = report::evolutionOf({side.mesh});
     view.shapes = {{"inflated", side.inflated.positions}, {"as it is", {}}};
     view.title = side.hemisphere->structure;
@@ -281,7 +283,7 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
   page.title = "Group statistics: " + settings.model;
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
-  const std::vector<Side> sides = o.surface ? sidesOf(o) : std::vector<Side>();
+  const std::vector<ShownSide> sides = o.surface ? sidesOf(o) : std::vector<ShownSide>();
   addTurnable(sides, r, page);
   addViews(sides, r, page);
   addPlots(o, r, values, page);

@@ -81,6 +81,27 @@ std::vector<Volume<Label>> readFrames(Context& context, const std::vector<std::s
   return frames;
 }
 
+std::vector<Volume<float>> readImages(const std::vector<std::string>& paths,
+                                      const io::VolumeReadOptions& reading, const Grid& grid,
+                                      std::size_t count) {
+  std::vector<Volume<float>> images;
+  for (const std::string& path : paths) {
+    io::VolumeSeries series(path, reading);
+    if (!sameGrid(series.grid(), grid)) {
+      throw InvalidInput("--image '" + path +
+                         "': its voxels lie elsewhere than those of the labels");
+    }
+    for (int f = 0; f < series.frames() && images.size() <= count; ++f) {
+      images.emplace_back(grid).data = series.next(1);
+    }
+  }
+  if (!paths.empty() && images.size() != count) {
+    throw InvalidInput("--image: " + std::to_string(images.size()) + " frames, but " +
+                       std::to_string(count) + " of labels");
+  }
+  return images;
+}
+
 Chosen chooseFrames(const std::string& wanted, const std::vector<Volume<Label>>& hearts) {
   const auto count = static_cast<int>(hearts.size());
   Chosen chosen;

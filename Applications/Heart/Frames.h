@@ -17,6 +17,14 @@ namespace explica::app {
                                                     const std::vector<std::string>& paths,
                                                     const io::VolumeReadOptions& reading);
 
+/// Images of the same frames, from one file or a file a frame.
+/// @param grid   that of the labels
+/// @param count  frames of labels
+/// @throws InvalidInput  another grid, or another number of frames
+[[nodiscard]] std::vector<Volume<float>> readImages(const std::vector<std::string>& paths,
+                                                    const io::VolumeReadOptions& reading,
+                                                    const Grid& grid, std::size_t count);
+
 /// Which frames are measured, and which of them are ED and ES.
 struct Chosen {
   std::vector<int> numbers;

@@ -20,15 +20,15 @@ namespace {
 constexpr double kFarTiltDeg = 30;  // of the axis from the slices' normal: not short axis
 constexpr double kLowSeptum = 60, kHighSeptum = 200;  // degrees
 
-struct Settings {
-  std::vector<std::string> segmentations;
+struct HeartSettings {
+  std::vector<std::string> segmentations, images;
   io::VolumeReadOptions reading;
   ventricle::HeartLabelOptions labels;
   ventricle::HeartOptions heart;
   std::string frames = "all";
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, HeartSettings& s) {
   d.synopsis("the left ventricle's wall over time: thickness, 17 segments, volumes, pictures")
       .description(
           R"(Reads short-axis label volumes, one file with all frames or a file a frame, and measures the wall of each. Where slices are much thicker than pixels, thickness is measured slice by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), slices that the valve plane cuts and the apical cap are found, drawn and left out of the means, with a count. The right ventricle's label tells where the 17 segments begin. Papillary muscles belong to whatever label they have.)")
@@ -46,6 +46,11 @@ void declare(Declaration& d, Settings& s) {
           "Two frames without a label of the right ventricle")
       .input("SEG", FileKind::LabelVolume, "label volume, 3-D or 4-D; several are frames in order",
              s.segmentations)
+      .inputOption("image", FileKind::Volume,
+                   "images of the same frames, 3-D or 4-D: the pictures of slices show both "
+                   "boundaries on them, and slices.gif the heart's beat",
+                   s.images)
+      .severalWords("image")
       .options("Labels", s.labels)
       .option("Frames",
               Field{"phases", "",
@@ -71,6 +76,7 @@ void declare(Declaration& d, Settings& s) {
       .output("slices_ed.png", FileKind::Picture, "the same in pixels")
       .output("slices_es.svg", FileKind::Picture, "slices at end-systole")
       .output("slices_es.png", FileKind::Picture, "the same in pixels")
+      .output("slices.gif", FileKind::Picture, "with --image: slices over time")
       .output("segments.nii.gz", FileKind::LabelVolume, "segment of each wall voxel at ED")
       .output("left_out.nii.gz", FileKind::LabelVolume,
               "wall voxels at ED that do not count: 1 opening, 2 valve plane, 3 apical cap, 4 "
@@ -136,7 +142,7 @@ void writePicture(Context& context, const std::string& name, const ventricle::Dr
   report::writePng(context.output(name + ".png"), drawn.pixels);
 }
 
-std::string frameName(int number) {
+std::string thicknessFile(int number) {
   return printed("thickness_frame-%04d.nii.gz", number);
 }
 
@@ -148,7 +154,8 @@ void writeVolumes(Context& context, const ventricle::Beat& beat) {
     for (std::size_t n = 0; n < shown.size(); ++n) {
       if (!wall.counts(n)) shown[n] = 0;
     }
-    io::writeVolume(context.output(frameName(frame.number)), harmonic::spread(wall.annulus, shown));
+    io::writeVolume(context.output(thicknessFile(frame.number)),
+                    harmonic::spread(wall.annulus, shown));
   }
   io::writeVolume(context.output("segments.nii.gz"), beat.atDiastole().segments->segmentOf);
   Volume<std::uint8_t> leftOut = beat.atDiastole().measures->reasons;
@@ -156,27 +163,43 @@ void writeVolumes(Context& context, const ventricle::Beat& beat) {
   io::writeVolume(context.output("left_out.nii.gz"), leftOut);
 }
 
-void writeOutputs(Context& context, const ventricle::Beat& beat) {
+/// @param images  one a frame of the beat, or none
+void writeSlices(Context& context, const ventricle::Beat& beat,
+                 const std::vector<Volume<float>>& images) {
+  const auto write = [&](const std::string& name, std::size_t f) {
+    writePicture(context, name,
+                 ventricle::slicePicture(beat, f, images.empty() ? nullptr : &images[f]));
+  };
+  write("slices_ed", beat.diastole);
+  if (beat.systole != beat.diastole && beat.atSystole().measures) write("slices_es", beat.systole);
+  if (images.size() > 1) {
+    writeTextFile(context.output("slices.gif"), ventricle::slicesOverTime(beat, images));
+  }
+}
+
+void writeOutputs(Context& context, const ventricle::Beat& beat,
+                  const std::vector<Volume<float>>& images) {
   writeTextFile(context.output("frames.tsv"), ventricle::frameTable(beat));
   writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
   writeTextFile(context.output("slices.tsv"), ventricle::sliceTable(beat));
   writeTextFile(context.output("reference.tsv"), ventricle::referenceTable(beat));
   writePicture(context, "bullseye", ventricle::bullseye(beat));
-  writePicture(context, "slices_ed", ventricle::slicePicture(beat, beat.diastole));
-  if (beat.systole != beat.diastole && beat.atSystole().measures) {
-    writePicture(context, "slices_es", ventricle::slicePicture(beat, beat.systole));
-  }
+  writeSlices(context, beat, images);
   writeVolumes(context, beat);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const HeartSettings& s) {
   std::vector<Volume<Label>> frames = readFrames(context, s.segmentations, s.reading);
+  std::vector<Volume<float>> images =
+      readImages(s.images, s.reading, frames.front().grid, frames.size());
   const ventricle::HeartRoles roles = ventricle::findRoles(frames, s.labels);
   for (Volume<Label>& frame : frames) frame = ventricle::relabelled(frame, roles);
   const Chosen chosen = chooseFrames(s.frames, frames);
   std::vector<Volume<Label>> hearts;
+  std::vector<Volume<float>> shown;
   for (const int n : chosen.numbers) {
     hearts.push_back(std::move(frames[static_cast<std::size_t>(n)]));
+    if (!images.empty()) shown.push_back(std::move(images[static_cast<std::size_t>(n)]));
   }
   ventricle::Beat beat;
   {
@@ -187,14 +210,14 @@ Termination run(Context& context, const Settings& s) {
   sayWhatIsOdd(context, beat);
   context.results(ventricle::HeartSummary{roles.how, &beat, judgeOpening(context, beat)});
   auto step = context.step("write");
-  writeOutputs(context, beat);
+  writeOutputs(context, beat, shown);
   return Termination::Finished;
 }
 
 }  // namespace
 
 Command heartCommand() {
-  return makeCommand<Settings>("heart", declare, run);
+  return makeCommand<HeartSettings>("heart", declare, run);
 }
 
 }  // namespace explica::app

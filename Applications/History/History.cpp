@@ -9,11 +9,11 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct HistorySettings {
   std::string file;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, HistorySettings& s) {
   d.synopsis("how a file came about, step by step, back to the first input")
       .description("Follows the provenance records beside the file and beside its inputs.")
       .example("explica history shell/labels.nii.gz", "Where does this volume come from?")
@@ -21,7 +21,7 @@ void declare(Declaration& d, Settings& s) {
       .withoutOutput();
 }
 
-Termination run(Context&, const Settings& s) {
+Termination run(Context&, const HistorySettings& s) {
   std::cout << provenance::historyOf(s.file);
   return Termination::NotRun;
 }
@@ -29,7 +29,7 @@ Termination run(Context&, const Settings& s) {
 }  // namespace
 
 Command historyCommand() {
-  return makeCommand<Settings>("history", declare, run);
+  return makeCommand<HistorySettings>("history", declare, run);
 }
 
 }  // namespace explica::app

@@ -24,7 +24,7 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct InflateSettings {
   std::string surface;
   io::SurfaceReadOptions reading;
   bool repair = true;
@@ -32,7 +32,7 @@ struct Settings {
   bool resume = false;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, InflateSettings& s) {
   d.synopsis("a closed surface opened as a whole until its folds are seen, areas kept")
       .description(
           R"(Looks at the surface from a sphere around it and turns every face towards the mean direction in which its place sees that sphere, until the global visibility reaches --target-seen: the share of the view that arrives, each place weighing the viewpoints before it by the cosine. It is 1 for convex surfaces and for no others; the share of the area that is seen from somewhere is larger. Face areas are kept, edges keep their lengths as well as they can, and no step lets the surface pass through itself; faces that intersect at the start are parted first.
@@ -68,7 +68,7 @@ What is written is tested once more: faces that cross in it and did not at the s
       .results<inflation::InflateSummary>();
 }
 
-TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata& metadata) {
+TriangleMesh readUsable(Context& context, const InflateSettings& s, io::SurfaceMetadata& metadata) {
   const io::LoadedSurface loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   const auto condition = geometry::requireClosedManifold(loaded.mesh, s.surface);
   unfolding::requireFitsSingle(loaded.mesh, s.surface);
@@ -83,7 +83,7 @@ TriangleMesh readUsable(Context& context, const Settings& s, io::SurfaceMetadata
 
 /// Lists the start's intersections and parts them in `mesh`.
 /// @return the pairs that are left
-std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
+std::vector<geometry::FacePair> checkStart(Context& context, const InflateSettings& s,
                                            TriangleMesh& mesh) {
   collision::Untangling repair;
   if (s.repair) {
@@ -108,10 +108,7 @@ std::vector<geometry::FacePair> checkStart(Context& context, const Settings& s,
   return repair.after;
 }
 
-// What comes after the iterations, in times of the start, which reads and tests one surface.
-constexpr double kRest = 2, kEachFrame = 0.5;
-
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const InflateSettings& s) {
   const Stopwatch seconds;
   Inflated u;
   u.before = readUsable(context, s, u.metadata);
@@ -122,6 +119,8 @@ Termination run(Context& context, const Settings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("inflate");
+    // What comes after the iterations, in times of the start, which reads and tests one surface.
+    constexpr double kRest = 2, kEachFrame = 0.5;
     const TimeKept rest(started * (kRest + kEachFrame * s.inflate.frames));
     u.result = inflation::inflate(u.before, s.inflate, context.monitor(),
                                   checkpoint ? &*checkpoint : nullptr);
@@ -141,7 +140,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command inflateCommand() {
-  return makeCommand<Settings>("inflate", declare, run);
+  return makeCommand<InflateSettings>("inflate", declare, run);
 }
 
 }  // namespace explica::app

@@ -7,6 +7,7 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
+#include "Explica/Flattening/Selection.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Inflation/Summary.h"
@@ -19,8 +20,6 @@
 
 namespace explica::app {
 namespace {
-
-constexpr double kDistanceWork = 3e5;  // vertices visited for the distance errors, about
 
 visibility::SphereView lookAt(TriangleMesh mesh, const inflation::InflateOptions& options) {
   if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
@@ -50,6 +49,7 @@ void writeVisibility(Context& context, const Inflated& u, const inflation::Infla
 void measureDistances(const Inflated& u, inflation::InflateSummary& summary) {
   const auto all = u.before.allFaces();
   flattening::DistanceOptions options;
+  constexpr double kDistanceWork = 3e5;  // vertices visited, about
   options.sources = options.farSources = static_cast<int>(
       std::clamp(kDistanceWork / static_cast<double>(u.before.vertexCount() + 1), 10.0, 20.0));
   const auto pairs = flattening::drawPairs(u.before, all, options);

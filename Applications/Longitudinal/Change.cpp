@@ -39,7 +39,7 @@ Eigen::VectorXd thicknessAt(Context& context, const fs::path& folder, const Posi
 }
 
 void writeMaps(const fs::path& path, const std::vector<Eigen::VectorXd>& thickness,
-               const Side& side) {
+               const MeasuredSide& side) {
   io::GiftiMapsWriter writer(path, side.structure(), 2 * thickness.size() - 1);
   const auto add = [&](const std::string& name, const Eigen::VectorXd& values) {
     const Eigen::VectorXf single = values.cast<float>();
@@ -91,7 +91,7 @@ void Sums::settle(Change& change) const {
   change.deviation = std::sqrt(std::max(0.0, second / known - change.mean * change.mean));
 }
 
-void measureChange(Context& context, std::size_t sessions, const Side& side,
+void measureChange(Context& context, std::size_t sessions, const MeasuredSide& side,
                    const std::string& person, double voxel, Sums& sums) {
   const fs::path out = context.outputFolder(), surface = out / ("template/surface" + side.ending);
   const TriangleMesh mid = readMid(context, surface);

@@ -23,7 +23,7 @@ inline std::string numbered(const char* stem, std::size_t session) {
 }
 
 /// One hemisphere, as the template's run has named it.
-struct Side {
+struct MeasuredSide {
   std::string ending, letter;
   [[nodiscard]] std::string structure() const {
     return letter == "L" ? "CortexLeft" : "CortexRight";
@@ -43,7 +43,7 @@ struct Sums {
 /// its regions.
 /// @param person  in the table
 /// @param voxel   mm
-void measureChange(Context& context, std::size_t sessions, const Side& side,
+void measureChange(Context& context, std::size_t sessions, const MeasuredSide& side,
                    const std::string& person, double voxel, Sums& sums);
 
 }  // namespace explica::app

@@ -30,14 +30,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Settings {
+struct LongitudinalSettings {
   std::vector<std::string> sessions;
   std::optional<std::string> atlas;
   pipeline::RunHemisphere hemisphere = pipeline::RunHemisphere::Both;
   Invocation run;  ///< whose options are taken over
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, LongitudinalSettings& s) {
   d.synopsis("change of thickness between sessions of a person, on a template of their own")
       .description(
           "Brings the T1s of one person by rigid registration into a space halfway between them, "
@@ -92,7 +92,7 @@ void declare(Declaration& d, Settings& s) {
                    s.atlas);
 }
 
-std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
+std::vector<Volume<float>> readSessions(Context& context, const LongitudinalSettings& s) {
   if (s.sessions.size() < 2) {
     throw UsageError("'" + s.sessions.front() +
                      "' is one session; a change is between two or more of the same person");
@@ -104,7 +104,7 @@ std::vector<Volume<float>> readSessions(Context& context, const Settings& s) {
   return sessions;
 }
 
-std::optional<Volume<Label>> readAtlas(Context& context, const Settings& s) {
+std::optional<Volume<Label>> readAtlas(Context& context, const LongitudinalSettings& s) {
   if (!s.atlas) return {};
   return readLabels(context, "atlas", *s.atlas, {.dimension = 3});
 }
@@ -122,7 +122,7 @@ void writeAtlas(Context& context, const Volume<Label>& atlas, const std::string&
 }
 
 /// @return the voxels' size, mm
-double writeCommonSpace(Context& context, const Settings& s,
+double writeCommonSpace(Context& context, const LongitudinalSettings& s,
                         const std::vector<Volume<float>>& sessions,
                         const std::optional<Volume<Label>>& atlas, Change& change) {
   const auto average = registration::averageSessions(sessions, context.monitor());
@@ -141,13 +141,13 @@ double writeCommonSpace(Context& context, const Settings& s,
   return average.mean.grid.spacing.maxCoeff();
 }
 
-std::vector<Side> sidesOf(const Settings& s) {
+std::vector<MeasuredSide> sidesOf(const LongitudinalSettings& s) {
   if (s.hemisphere == pipeline::RunHemisphere::Both) return {{"-L", "L"}, {"-R", "R"}};
   return {{"", std::string(nameOf(s.hemisphere))}};
 }
 
 /// `explica run` of the mean, but for its input and atlas.
-Json runOfTemplate(const Context& context, const Settings& s) {
+Json runOfTemplate(const Context& context, const LongitudinalSettings& s) {
   Json values = givenOptions(context, s.run.declaration);
   values["kind"] = "t1";
   values["hemisphere"] = nameOf(s.hemisphere);
@@ -159,7 +159,7 @@ Json runOfTemplate(const Context& context, const Settings& s) {
 }
 
 /// In a dry run: what the runs would refuse is refused of the first session as it is.
-void checkBeforehand(Context& context, const Settings& s) {
+void checkBeforehand(Context& context, const LongitudinalSettings& s) {
   if (!context.given("dry-run")) return;
   Json values = runOfTemplate(context, s);
   values["INPUT"] = s.sessions.front();
@@ -168,7 +168,7 @@ void checkBeforehand(Context& context, const Settings& s) {
 }
 
 /// Takes the mean, then each session, through `explica run`.
-Termination runAll(Context& context, const Settings& s) {
+Termination runAll(Context& context, const LongitudinalSettings& s) {
   const fs::path out = context.outputFolder();
   Termination worst = Termination::Finished;
   const auto take = [&](const std::string& name, Json values) {
@@ -196,14 +196,14 @@ Termination runAll(Context& context, const Settings& s) {
 }
 
 /// As given, or what the first session's file is called up to "_".
-std::string personOf(const Context& context, const Settings& s) {
+std::string personIn(const Context& context, const LongitudinalSettings& s) {
   const std::string file = fs::path(s.sessions.front()).filename().string();
   const Json given = givenOptions(context, s.run.declaration);
   return given.value("regions.person", file.substr(0, file.find_first_of("_.")));
 }
 
 /// Half a comparison is of no use: what a failure or a stop leaves goes.
-void takeBack(Context& context, const Settings& s) {
+void takeBack(Context& context, const LongitudinalSettings& s) {
   std::vector<std::string> names = {"template"};
   for (std::size_t n = 0; n < s.sessions.size(); ++n) names.push_back(numbered("session-", n));
   std::error_code ignored;
@@ -223,7 +223,7 @@ void takeBack(Context& context, const Settings& s) {
   }
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const LongitudinalSettings& s) {
   const std::vector<Volume<float>> sessions = readSessions(context, s);
   const std::optional<Volume<Label>> atlas = readAtlas(context, s);
   checkBeforehand(context, s);
@@ -238,8 +238,8 @@ Termination run(Context& context, const Settings& s) {
   Sums sums;
   try {
     worst = runAll(context, s);
-    for (const Side& side : sidesOf(s)) {
-      measureChange(context, sessions.size(), side, personOf(context, s), voxel, sums);
+    for (const MeasuredSide& side : sidesOf(s)) {
+      measureChange(context, sessions.size(), side, personIn(context, s), voxel, sums);
     }
   } catch (...) {
     takeBack(context, s);
@@ -253,7 +253,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command longitudinalCommand() {
-  return makeCommand<Settings>("longitudinal", declare, run);
+  return makeCommand<LongitudinalSettings>("longitudinal", declare, run);
 }
 
 }  // namespace explica::app

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct ParcellateSettings {
   std::string folder;
   std::vector<std::string> atlases;
   std::optional<std::string> templateName, hemisphere;
@@ -32,11 +32,11 @@ struct Settings {
 };
 
 /// Labels that are carried over, with what else is known of those who have them.
-struct Atlas {
+struct NamedAtlas {
   std::string file, sphere, sulc;  ///< empty: to be looked for beside the file
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ParcellateSettings& s) {
   d.synopsis("regions of an atlas, or of labelled people, on a person's surfaces")
       .description(
           "Carries labels over to a person's surfaces through spheres in register, such as "
@@ -86,7 +86,7 @@ void declare(Declaration& d, Settings& s) {
       .output("aparc.tsv", FileKind::Table, "with --volume: key and name of each region");
 }
 
-std::string prefixOf(const Settings& s) {
+std::string prefixOf(const ParcellateSettings& s) {
   if (s.hemisphere && *s.hemisphere != "L" && *s.hemisphere != "R") {
     throw UsageError("--hemisphere must be L or R");
   }
@@ -117,7 +117,7 @@ std::optional<TriangleMesh> fsaverageOf(Eigen::Index vertices) {
 }
 
 /// Sphere and folding of an atlas, found beside its file where they are not named.
-maps::LabelledSphere readAtlas(Context& context, const Atlas& named, const std::string& prefix,
+maps::LabelledSphere readAtlas(Context& context, const NamedAtlas& named, const std::string& prefix,
                                const io::LabelMap& labels) {
   const std::string& file = named.file;
   const fs::path own = fs::path(file).parent_path();
@@ -148,8 +148,9 @@ maps::LabelledSphere readAtlas(Context& context, const Atlas& named, const std::
 }
 
 /// The labels that the user names, else the template's.
-std::vector<Atlas> atlasesOf(Context& context, const Settings& s, const std::string& structure) {
-  std::vector<Atlas> atlases;
+std::vector<NamedAtlas> atlasesOf(Context& context, const ParcellateSettings& s,
+                                  const std::string& structure) {
+  std::vector<NamedAtlas> atlases;
   for (const std::string& file : s.atlases) {
     atlases.push_back({file, "", ""});
   }
@@ -174,7 +175,7 @@ std::vector<io::LabelEntry> toldByColour(std::vector<io::LabelEntry> table) {
 }
 
 /// White and pial surface of the person.
-std::array<TriangleMesh, 2> readRibbon(Context& context, const Settings& s,
+std::array<TriangleMesh, 2> readRibbon(Context& context, const ParcellateSettings& s,
                                        const std::string& prefix, Eigen::Index vertices) {
   std::array<TriangleMesh, 2> ribbon;
   for (std::size_t n = 0; n < 2; ++n) {
@@ -230,7 +231,7 @@ void writeVolume(Context& context, const std::array<TriangleMesh, 2>& ribbon, co
   writeTextFile(context.output("aparc.tsv"), legend);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const ParcellateSettings& s) {
   const std::string prefix = prefixOf(s);
   const std::string structure = prefix == "rh." ? "CortexRight" : "CortexLeft";
   const auto place =
@@ -248,9 +249,9 @@ Termination run(Context& context, const Settings& s) {
   if (const auto sulc = findFile({s.folder}, {prefix + "sulc", "sulc.shape.gii"})) {
     folding = io::readVertexMaps(context.input(*sulc, "sulc"), sphere.vertexCount()).front().values;
   }
-  const std::vector<Atlas> named = atlasesOf(context, s, structure);
+  const std::vector<NamedAtlas> named = atlasesOf(context, s, structure);
   std::vector<io::LabelMap> labels;
-  for (const Atlas& atlas : named) labels.push_back(io::readVertexLabels(atlas.file));
+  for (const NamedAtlas& atlas : named) labels.push_back(io::readVertexLabels(atlas.file));
   io::numberAlike(labels);
   std::vector<maps::LabelledSphere> atlases;
   for (std::size_t a = 0; a < labels.size(); ++a) {
@@ -279,7 +280,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command parcellateCommand() {
-  return makeCommand<Settings>("parcellate", declare, run);
+  return makeCommand<ParcellateSettings>("parcellate", declare, run);
 }
 
 }  // namespace explica::app

@@ -11,11 +11,11 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct PhantomCortexSettings {
   phantom::CortexOptions cortex;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, PhantomCortexSettings& s) {
   d.synopsis("folded grey ribbon of constant thickness, as labels and as a T1-weighted image")
       .description(
           R"(A folded white surface with grey matter of one thickness all around it, and fluid beyond. Label 3 is white matter, 2 grey, 1 fluid, as explica segment writes them. The image has noise and a bias field; with --dura, a sheet nearly as bright as grey matter lies in the fluid.)")
@@ -30,7 +30,7 @@ void declare(Declaration& d, Settings& s) {
       .output("white.surf.gii", FileKind::Surface, "the exact white surface");
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const PhantomCortexSettings& s) {
   phantom::Cortex cortex;
   {
     auto step = context.step("generate");
@@ -56,7 +56,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command phantomCortexCommand() {
-  return makeCommand<Settings>("phantom cortex", declare, run);
+  return makeCommand<PhantomCortexSettings>("phantom cortex", declare, run);
 }
 
 }  // namespace explica::app

@@ -11,11 +11,11 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct PhantomFoldsSettings {
   phantom::FoldedSheetOptions sheet;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, PhantomFoldsSettings& s) {
   d.synopsis("sheet in overhanging folds that hide each other, with a region to unfold")
       .description(
           R"(A sheet whose folds overhang and wind to and fro. Seen along --direction 0,0,1 of 'explica unfold' a fifth of its area is visible on average, and unfolded nearly all of it: without winding it can be laid flat with every length kept.)")
@@ -27,7 +27,7 @@ void declare(Declaration& d, Settings& s) {
       .output("region.label.gii", FileKind::VertexLabel, "1 where it is to be unfolded");
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const PhantomFoldsSettings& s) {
   auto step = context.step("generate");
   const phantom::FoldedSheet sheet = phantom::makeFoldedSheet(s.sheet);
   io::writeGiftiSurface(context.output("folds.surf.gii"), sheet.mesh);
@@ -48,7 +48,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command phantomFoldsCommand() {
-  return makeCommand<Settings>("phantom folds", declare, run);
+  return makeCommand<PhantomFoldsSettings>("phantom folds", declare, run);
 }
 
 }  // namespace explica::app

@@ -11,11 +11,12 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct PolygonKindSettings {
   double spacing = 1;
 };
 
-void declare(Declaration& d, Settings& s, const char* synopsis, const char* example) {
+void declareKind(Declaration& d, PolygonKindSettings& s, const char* synopsis,
+                 const char* example) {
   d.synopsis(synopsis)
       .description(
           "A closed polygon whose upper side is folded, with the region and the viewpoint that "
@@ -25,7 +26,8 @@ void declare(Declaration& d, Settings& s, const char* synopsis, const char* exam
       .output("polygon.csv", FileKind::Polygon, "vertices in order, counter-clockwise");
 }
 
-Termination run(Context& context, const Settings& s, planar::PolygonPhantom phantom) {
+Termination runKind(Context& context, const PolygonKindSettings& s,
+                    planar::PolygonPhantom phantom) {
   if (!(s.spacing > 0)) throw UsageError("--spacing must be positive");
   auto step = context.step("generate");
   phantom.curve.positions *= s.spacing;
@@ -44,26 +46,31 @@ Termination run(Context& context, const Settings& s, planar::PolygonPhantom phan
   return Termination::NotRun;
 }
 
+void declare19(Declaration& d, PolygonKindSettings& s) {
+  declareKind(d, s, "polygon with an intricate region of 19 edges",
+              "explica phantom polygon19 --out p19");
+}
+
+void declare34(Declaration& d, PolygonKindSettings& s) {
+  declareKind(d, s, "polygon with a highly convoluted region of 34 edges",
+              "explica phantom polygon34 --out p34");
+}
+
+template <planar::PolygonPhantom (*Make)()>
+Termination runWith(Context& context, const PolygonKindSettings& s) {
+  return runKind(context, s, Make());
+}
+
 }  // namespace
 
 Command phantomPolygon19Command() {
-  return makeCommand<Settings>(
-      "phantom polygon19",
-      [](Declaration& d, Settings& s) {
-        declare(d, s, "polygon with an intricate region of 19 edges",
-                "explica phantom polygon19 --out p19");
-      },
-      [](Context& context, const Settings& s) { return run(context, s, planar::makePolygon19()); });
+  return makeCommand<PolygonKindSettings>("phantom polygon19", declare19,
+                                          runWith<planar::makePolygon19>);
 }
 
 Command phantomPolygon34Command() {
-  return makeCommand<Settings>(
-      "phantom polygon34",
-      [](Declaration& d, Settings& s) {
-        declare(d, s, "polygon with a highly convoluted region of 34 edges",
-                "explica phantom polygon34 --out p34");
-      },
-      [](Context& context, const Settings& s) { return run(context, s, planar::makePolygon34()); });
+  return makeCommand<PolygonKindSettings>("phantom polygon34", declare34,
+                                          runWith<planar::makePolygon34>);
 }
 
 }  // namespace explica::app

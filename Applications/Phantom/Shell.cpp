@@ -10,12 +10,12 @@ namespace {
 
 /// What the user may set.  Option structs of modules are members, so that each default is stated
 /// once, in its module; paths of inputs are std::string members.
-struct Settings {
+struct PhantomShellSettings {
   phantom::ShellOptions shell;
 };
 
 /// Said once: parser, --help, --config, provenance, reference page and descriptors follow.
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, PhantomShellSettings& s) {
   d.synopsis("spherical shell of tissue with its exact thickness and harmonic function")
       .description(
           R"(Concentric spheres about the middle of the grid. Label 1 is enclosed by the tissue, 2 is the tissue, 0 the rest. Every trajectory is a radius, so that the thickness is the difference of the radii everywhere.)")
@@ -30,7 +30,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 /// Read, call, write, report.  Loops over voxels belong in modules.
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const PhantomShellSettings& s) {
   // A command with inputs reads and checks them here, before its first step: --dry-run ends there.
   phantom::Shell shell;
   harmonic::PhantomAnswers answers;
@@ -54,7 +54,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command phantomShellCommand() {
-  return makeCommand<Settings>("phantom shell", declare, run);
+  return makeCommand<PhantomShellSettings>("phantom shell", declare, run);
 }
 
 }  // namespace explica::app

@@ -9,11 +9,11 @@
 namespace explica::app {
 namespace {
 
-struct Settings : AnnulusKindSettings {
+struct PhantomVentricleSettings : AnnulusKindSettings {
   phantom::BeatOptions beat;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, PhantomVentricleSettings& s) {
   d.synopsis("a left ventricle between confocal spheroids, cut at its base, with exact answers")
       .description(
           R"(Focal distance 40 mm, sinh mu 0.6 and 0.9, the base 15 mm above the centre. Label 3 is a right ventricle, 4 what lies beyond the base: give it to --insulated. Near the base, which trajectories cross obliquely, the answers are not exact. With --frames the ventricle beats: its wall keeps its volume, its cavity ejects the share --ejection, slices may be thick and tilted as in cine MRI, labels are 1 cavity, 2 wall, 3 right ventricle, and the other outputs are tables.)")
@@ -53,7 +53,7 @@ std::string segmentTable(const phantom::BeatingVentricle& beat) {
   return text;
 }
 
-Termination runBeat(Context& context, const Settings& s) {
+Termination runBeat(Context& context, const PhantomVentricleSettings& s) {
   phantom::BeatingVentricle beat;
   {
     auto step = context.step("generate");
@@ -75,7 +75,7 @@ Termination runBeat(Context& context, const Settings& s) {
   return Termination::Finished;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const PhantomVentricleSettings& s) {
   if (s.beat.frames) return runBeat(context, s);
   // A record that is replayed gives every option, at its default too.
   const phantom::BeatOptions none;
@@ -90,7 +90,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command phantomVentricleCommand() {
-  return makeCommand<Settings>("phantom ventricle", declare, run);
+  return makeCommand<PhantomVentricleSettings>("phantom ventricle", declare, run);
 }
 
 }  // namespace explica::app

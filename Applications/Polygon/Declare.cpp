@@ -61,7 +61,7 @@ void declarePolygon(Declaration& d, PolygonSettings& s) {
       .output("evolution.svg", FileKind::Picture,
               "start, stages and end, with the direction of view")
       .output("frames/frame-*.csv", FileKind::Polygon, "states on the way")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .varyingOutput(kPolygonState, FileKind::Any, "what --resume needs")
       .results<planar::PolygonSummary>()
       .results<planar::PolygonUnfoldSummary>();
 }

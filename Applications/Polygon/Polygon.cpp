@@ -161,7 +161,7 @@ void writeUnfolding(Context& context, const PolygonSettings& s,
   }
   io::writePolygonVtp(context.output("unfolded.vtp"), result.curve.positions, {}, edgeMaps);
   writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
-  writeTextFile(context.output(kStateFile), textOf(result.checkpoint));
+  writeTextFile(context.output(kPolygonState), textOf(result.checkpoint));
   writeStages(context, s, result, view);
 }
 
@@ -198,7 +198,7 @@ Termination run(Context& context, const PolygonSettings& s) {
   std::optional<planar::PolygonCheckpoint> state;
   if (s.resume) {
     if (!view) throw UsageError("--resume needs the viewpoint of the first run");
-    state = readState(context.outputFolder() / kStateFile);
+    state = readState(context.outputFolder() / kPolygonState);
   }
 
   reportPolygon(context, task);

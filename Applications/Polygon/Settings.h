@@ -20,7 +20,7 @@ constexpr auto enumWords(PhantomPolygon) {
       {{Polygon19, "polygon19"}, {Polygon34, "polygon34"}});
 }
 
-inline constexpr char kStateFile[] = "polygon.state";
+inline constexpr char kPolygonState[] = "polygon.state";
 
 /// What `explica polygon` is asked for.
 struct PolygonSettings {

@@ -23,13 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct RegionsSettings {
   std::string folder;
   std::vector<std::string> atlases, maps;
   std::optional<std::string> hemisphere, person;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, RegionsSettings& s) {
   d.synopsis("area, volume, thickness, curvature and any map by region of an atlas")
       .description(
           "Takes the surfaces and maps of one hemisphere from a folder, FreeSurfer's surf or one "
@@ -64,7 +64,7 @@ struct Hemisphere {
   std::vector<io::VertexMap> maps;
 };
 
-std::string sideOf(const Settings& s) {
+std::string sideOf(const RegionsSettings& s) {
   if (s.hemisphere) {
     if (*s.hemisphere != "L" && *s.hemisphere != "R") {
       throw UsageError("--hemisphere must be L or R");
@@ -80,7 +80,7 @@ std::string sideOf(const Settings& s) {
 }
 
 /// A file of the folder by FreeSurfer's name or our own.
-std::optional<fs::path> fileOf(Context& context, const Settings& s, const std::string& side,
+std::optional<fs::path> fileOf(Context& context, const RegionsSettings& s, const std::string& side,
                                const std::string& fsName, const std::string& ours) {
   for (const std::string& name : {(side == "L" ? "lh." : "rh.") + fsName, ours}) {
     const fs::path path = fs::path(s.folder) / name;
@@ -96,7 +96,7 @@ Eigen::VectorXd mapOf(const std::optional<fs::path>& path, std::optional<Eigen::
   return values;
 }
 
-Hemisphere readHemisphere(Context& context, const Settings& s, const std::string& side) {
+Hemisphere readHemisphere(Context& context, const RegionsSettings& s, const std::string& side) {
   Hemisphere found;
   found.structure = side == "L" ? "CortexLeft" : "CortexRight";
   const auto file = [&](const std::string& fsName, const std::string& ours) {
@@ -227,7 +227,7 @@ std::string longRows(const std::string& person, const std::string& side, const A
 
 /// The person's name: what is given, else the subject's folder of FreeSurfer's surf, else the
 /// folder.
-std::string personOf(const Settings& s) {
+std::string personIn(const RegionsSettings& s) {
   if (s.person) return *s.person;
   fs::path folder = fs::absolute(s.folder).lexically_normal();
   if (folder.filename().empty()) folder = folder.parent_path();
@@ -245,7 +245,7 @@ std::string stemOfAtlas(const std::string& path, const std::string& side) {
   return (side == "L" ? "lh." : "rh.") + stem;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const RegionsSettings& s) {
   const std::string side = sideOf(s);
   const Hemisphere hemisphere = readHemisphere(context, s, side);
   std::vector<fs::path> atlases(s.atlases.begin(), s.atlases.end());
@@ -257,9 +257,9 @@ Termination run(Context& context, const Settings& s) {
     AtlasTable table = measured(hemisphere, labels[a]);
     const std::string stem = stemOfAtlas(s.atlases[a], side);
     table.name = stem.substr(3);
-    text += longRows(personOf(s), side, table);
+    text += longRows(personIn(s), side, table);
     regions += table.regions.size();
-    const StatsHead head{personOf(s), stem.substr(0, 2),
+    const StatsHead head{personIn(s), stem.substr(0, 2),
                          fs::path(s.atlases[a]).filename().string()};
     const StatsRow cortex = table.rows.back();
     table.rows.pop_back();
@@ -273,7 +273,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command regionsCommand() {
-  return makeCommand<Settings>("regions", declare, run);
+  return makeCommand<RegionsSettings>("regions", declare, run);
 }
 
 }  // namespace explica::app

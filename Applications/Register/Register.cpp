@@ -13,7 +13,7 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct RegisterSettings {
   std::string sphere;
   std::optional<std::string> sulc, curvature, surfaces;
   std::optional<std::string> templateName;
@@ -22,7 +22,7 @@ struct Settings {
   sphere::RegisterOptions registration;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, RegisterSettings& s) {
   d.synopsis("a sphere brought onto a template's, or another person's, by the folds")
       .description(
           R"(Registers a hemisphere's sphere to a template by sulcal depth and mean curvature: an icosphere on the template moves over the sphere, from coarse to fine, to where the folds agree, from many rotations at once, of which those of least energy go on. No face of it turns over and no area changes by more than --max-areal doublings, so that the map is one to one; the sphere's vertices follow, and what is written is tested exactly. The template is a folder with lh.sphere.reg, lh.sulc and lh.curv (rh. for a right hemisphere; lh.sulc_sd and lh.curv_sd beside them weigh the maps), what explica run has left of a person, or --to another person's sphere. A right hemisphere goes onto a left one with --mirror, and the other way round.)")
@@ -63,7 +63,8 @@ std::string otherSide(const std::string& structure) {
   return structure == "CortexRight" ? "CortexLeft" : "CortexRight";
 }
 
-FoldingFiles targetFiles(Context& context, const Settings& s, const std::string& structure) {
+FoldingFiles targetFiles(Context& context, const RegisterSettings& s,
+                         const std::string& structure) {
   const std::string side = s.mirror ? otherSide(structure) : structure;
   if (s.to) {
     const std::string known = io::structureFromName(*s.to);
@@ -97,7 +98,7 @@ void write(Context& context, const sphere::FoldingSphere& moving,
                       structure);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const RegisterSettings& s) {
   std::string structure = io::readSurface(s.sphere).metadata.structure;
   if (structure == "Other") structure = "CortexLeft";
   const FoldingFiles files = subjectFiles(s.sphere, structure, s.sulc, s.curvature, s.surfaces);
@@ -120,7 +121,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command registerCommand() {
-  return makeCommand<Settings>("register", declare, run);
+  return makeCommand<RegisterSettings>("register", declare, run);
 }
 
 }  // namespace explica::app

@@ -20,12 +20,12 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct RepairSettings {
   std::vector<std::string> surfaces;
   collision::RepairOptions repair;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, RepairSettings& s) {
   d.synopsis("faces of a surface that cross each other parted, by moving few vertices a little")
       .description(
           R"(Finds every pair of faces that intersect, by an exact test, and parts them by small moves of the vertices about. Faces and the numbers of vertices stay, and vertices that do not move keep every bit. A group of crossings that would need a longer move than --max-move is left as it is and said; so the result never crosses more than the input. Several surfaces with the same faces (white, pial) are repaired each by itself and never come to meet each other where they did not. A run that is stopped writes what it has parted by then; repair the result again to go on. A FreeSurfer file is also written in its own format, to take its place between recon-all and what follows.)")
@@ -45,15 +45,15 @@ void declare(Declaration& d, Settings& s) {
       .results<collision::RepairSummary>();
 }
 
-struct Inputs {
+struct CrossingSurfaces {
   std::vector<std::string> names;
   std::vector<io::LoadedSurface> loaded;
   std::vector<TriangleMesh> meshes;  ///< in the files' own coordinates
 };
 
 /// Surfaces in the coordinates of their files, so that what is written back is what was tested.
-Inputs readInputs(Context& context, const Settings& s) {
-  Inputs inputs;
+CrossingSurfaces readInputs(Context& context, const RepairSettings& s) {
+  CrossingSurfaces inputs;
   std::set<std::string> names;
   for (const std::string& path : s.surfaces) {
     inputs.loaded.push_back(
@@ -116,9 +116,9 @@ void warnOfRest(Context& context, const std::vector<collision::RepairedSurface>&
   context.warn(message);
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const RepairSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
-  const Inputs inputs = readInputs(context, s);
+  const CrossingSurfaces inputs = readInputs(context, s);
   std::vector<collision::RepairedSurface> repaired;
   {
     auto step = context.step("repair");
@@ -147,7 +147,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command repairCommand() {
-  return makeCommand<Settings>("repair", declare, run);
+  return makeCommand<RepairSettings>("repair", declare, run);
 }
 
 }  // namespace explica::app

@@ -16,11 +16,11 @@ namespace {
 using provenance::Json;
 namespace fs = std::filesystem;
 
-struct Settings {
+struct ReplaySettings {
   std::string record;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ReplaySettings& s) {
   d.synopsis("repeat an earlier run from its record and compare the results")
       .description(
           R"(Takes command, options and inputs from the record. Prints one line per output: identical, DIFFERENT or MISSING. Ends with exit code 3 if any output is not identical. Files that hold times are compared by their numbers. The record may be a stranger's: what would write outside --out, or read other files than the inputs that it names, is refused.)")
@@ -61,7 +61,7 @@ int compare(const Json& before, const fs::path& beforeFolder, const fs::path& af
   return different;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const ReplaySettings& s) {
   const fs::path recordPath = provenance::recordAt(s.record);
   const Json record = provenance::readRecord(recordPath);
   const std::string name = record["command"];
@@ -99,7 +99,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command replayCommand() {
-  return makeCommand<Settings>("replay", declare, run);
+  return makeCommand<ReplaySettings>("replay", declare, run);
 }
 
 }  // namespace explica::app

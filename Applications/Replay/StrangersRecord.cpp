@@ -17,9 +17,9 @@ using provenance::Json;
 namespace fs = std::filesystem;
 
 /// The files that a record says were read, and where they are now.
-class Inputs {
+class RecordedInputs {
  public:
-  Inputs(Context& context, const Json& record, const fs::path& recordPath)
+  RecordedInputs(Context& context, const Json& record, const fs::path& recordPath)
       : context_(context),
         record_(record),
         recordPath_(recordPath),
@@ -94,7 +94,7 @@ void requireConfined(const Declaration& declaration, const fs::path& recordPath)
 
 Json confinedValues(Context& context, Declaration& declaration, const Json& record,
                     const fs::path& recordPath, const fs::path& out) {
-  const Inputs inputs(context, record, recordPath);
+  const RecordedInputs inputs(context, record, recordPath);
   Json recorded = record["options"];
   recorded.update(record["execution"]["arguments"]);
   Json values = Json::object();

@@ -12,14 +12,14 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct ReportSettings {
   std::string folder;
   std::optional<std::string> page;
   std::optional<std::string> out;
   pipeline::FolderReportOptions show;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ReportSettings& s) {
   d.synopsis("one self-contained web page on what a command or a whole run did")
       .description(
           R"(Shows quality flags with reasons, slices, surfaces, distributions and curves, the unfolding in an interactive three-dimensional view, and for each step its command line, options and results. The page needs no network and no other file. Steps that failed or stopped are shown as such.)")
@@ -47,7 +47,7 @@ void declare(Declaration& d, Settings& s) {
       .withoutOutput();
 }
 
-std::filesystem::path pageOf(const Settings& s) {
+std::filesystem::path pageOf(const ReportSettings& s) {
   namespace fs = std::filesystem;
   if (s.page) return *s.page;
   if (!s.out) return fs::path(s.folder) / "report.html";
@@ -65,7 +65,7 @@ void makeFolder(const std::filesystem::path& folder) {
   }
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const ReportSettings& s) {
   const std::filesystem::path page = pageOf(s);
   const std::string text =
       report::reportPage(pipeline::collectReport(s.folder, s.show, context.monitor()));
@@ -78,7 +78,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command reportCommand() {
-  return makeCommand<Settings>("report", declare, run);
+  return makeCommand<ReportSettings>("report", declare, run);
 }
 
 }  // namespace explica::app

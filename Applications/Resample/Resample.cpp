@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kFsLR = "fs_LR-32k";
 
-struct Settings {
+struct ResampleSettings {
   std::vector<std::string> maps;
   std::optional<std::string> from;
   std::string to;
@@ -35,7 +35,7 @@ struct Settings {
   std::vector<std::string> amounts;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ResampleSettings& s) {
   d.synopsis("maps, labels and surfaces brought from one sphere to another in register with it")
       .description(
           "Carries what is known at the vertices of one surface over to the vertices of another, "
@@ -86,13 +86,13 @@ void declare(Declaration& d, Settings& s) {
               "NAME_space-SPACE_den-DENSITY: each file, in its own format");
 }
 
-struct Target {
+struct ResampleTarget {
   io::LoadedSurface sphere;
   std::string space;
 };
 
 /// The HCP's fs_LR sphere of a hemisphere at its place on fsaverage.
-std::string fsLRFile(const Settings& s, const std::string& structure) {
+std::string fsLRFile(const ResampleSettings& s, const std::string& structure) {
   const std::string side = structure == "CortexRight" ? "R" : "L";
   const std::string name = "fs_LR-deformed_to-fsaverage." + side + ".sphere.32k_fs_LR.surf.gii";
   if (!s.templateFolder) {
@@ -110,8 +110,9 @@ std::string spaceOf(const std::string& name) {
   return space;
 }
 
-Target readTarget(Context& context, const Settings& s, const std::string& structure) {
-  Target target;
+ResampleTarget readTarget(Context& context, const ResampleSettings& s,
+                          const std::string& structure) {
+  ResampleTarget target;
   if (s.space) target.space = spaceOf(*s.space);
   if (const auto level = maps::fsaverageLevel(s.to)) {
     target.sphere.mesh = maps::fsaverageSphere(*level);
@@ -133,7 +134,7 @@ Target readTarget(Context& context, const Settings& s, const std::string& struct
 
 /// A sphere that explica has made says by its record what it is in register with.
 /// @throws InvalidInput  another template than --to names
-void requireRegister(const Settings& s) {
+void requireRegister(const ResampleSettings& s) {
   if (s.space || (!maps::fsaverageLevel(s.to) && s.to != kFsLR)) return;
   const auto found = provenance::findRecordOf(*s.from, provenance::digestOf(*s.from));
   if (!found || !found->sameContent) return;
@@ -156,7 +157,7 @@ std::string densityOf(Eigen::Index vertices) {
   return vertices < 1000 ? std::to_string(vertices) : std::to_string((vertices + 500) / 1000) + "k";
 }
 
-Eigen::VectorXd areasOf(Context& context, const Settings& s, std::size_t place,
+Eigen::VectorXd areasOf(Context& context, const ResampleSettings& s, std::size_t place,
                         const TriangleMesh& sphere) {
   const std::string both = s.areas.value_or(""), first = both.substr(0, both.find(','));
   const std::string path =
@@ -204,8 +205,8 @@ CarriedFile readFile(const std::string& path, const io::LoadedSurface& from,
   return file;
 }
 
-std::vector<CarriedFile> readFiles(const Settings& s, const io::LoadedSurface& from,
-                                   const Target& target) {
+std::vector<CarriedFile> readFiles(const ResampleSettings& s, const io::LoadedSurface& from,
+                                   const ResampleTarget& target) {
   const std::string entity =
       "space-" + target.space + "_den-" + densityOf(target.sphere.mesh.vertexCount());
   std::vector<CarriedFile> files;
@@ -260,11 +261,11 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
   }
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const ResampleSettings& s) {
   const io::LoadedSurface from =
       readSurface(context, "from", *s.from, {.space = io::SurfaceSpace::Scanner});
   requireRegister(s);
-  const Target target = readTarget(context, s, from.metadata.structure);
+  const ResampleTarget target = readTarget(context, s, from.metadata.structure);
   const std::vector<CarriedFile> files = readFiles(s, from, target);
   maps::requireSphere(from.mesh, "'" + *s.from + "'");
   maps::requireSphere(target.sphere.mesh, "'" + s.to + "'");
@@ -293,7 +294,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command resampleCommand() {
-  return makeCommand<Settings>("resample", declare, run);
+  return makeCommand<ResampleSettings>("resample", declare, run);
 }
 
 }  // namespace explica::app

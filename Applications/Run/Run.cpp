@@ -8,6 +8,7 @@
 #include "Explica/Application/CortexTemplate.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
+#include "Explica/Application/Plausible.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
@@ -229,6 +230,9 @@ void sayWhatIsUsed(Context& context, const RunSettings& s, const pipeline::Plan&
 void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Plan& plan) {
   context.judged();
   sayWhatIsUsed(context, s, plan);
+  if (plan.kind == pipeline::InputKind::Labels) {
+    Judge(context, s.accept).require("thick-slices", io::readGrid(s.input).spacing.maxCoeff());
+  }
   for (const auto* file : {&s.atlas, &s.t2}) {
     if (*file) static_cast<void>(io::readGrid(**file));
   }

@@ -20,7 +20,7 @@ constexpr const char* kDescription =
     "atlas in its space. What cannot be a T1 is refused; numbers beyond what heads have are "
     "flagged, exit code 3.";
 
-void declareOutputs(Declaration& d) {
+void declareTissueOutputs(Declaration& d) {
   d.output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
       .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
       .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
@@ -81,7 +81,7 @@ void declareSegment(Declaration& d, SegmentSettings& s) {
       .options("Tissues", s.tissue)
       .options("Hemisphere", s.hemisphere);
   declareAccept(d, s.accept);
-  declareOutputs(d);
+  declareTissueOutputs(d);
   d.results<registration::HeadSummary>().results<segmentation::TissueSummary>();
 }
 

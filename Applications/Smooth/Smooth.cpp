@@ -19,14 +19,14 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct SmoothSettings {
   std::vector<std::string> maps;
   std::optional<std::string> surface, mask;
   io::SurfaceReadOptions reading;
   double fwhm = 0;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, SmoothSettings& s) {
   d.synopsis("maps on a surface, diffused along it")
       .description(
           "Solves the heat equation on the surface, so that a point spreads to a Gaussian of the "
@@ -84,7 +84,7 @@ std::string shortNumber(double value) {
   return {text, end.ptr};
 }
 
-std::vector<MapFile> readMapFiles(const Settings& s, const io::LoadedSurface& surface) {
+std::vector<MapFile> readMapFiles(const SmoothSettings& s, const io::LoadedSurface& surface) {
   std::vector<MapFile> files;
   std::set<std::string> names;
   for (const std::string& path : s.maps) {
@@ -104,7 +104,7 @@ std::vector<MapFile> readMapFiles(const Settings& s, const io::LoadedSurface& su
   return files;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const SmoothSettings& s) {
   const io::LoadedSurface surface = readSurface(context, "surface", *s.surface, s.reading);
   const TriangleMesh& mesh = surface.mesh;
   geometry::requireManifold(mesh, *s.surface);
@@ -138,7 +138,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command smoothCommand() {
-  return makeCommand<Settings>("smooth", declare, run);
+  return makeCommand<SmoothSettings>("smooth", declare, run);
 }
 
 }  // namespace explica::app

@@ -15,13 +15,13 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct SphereSettings {
   std::string surface;
   io::SurfaceReadOptions reading;
   sphere::SphereMapOptions map;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, SphereSettings& s) {
   d.synopsis("a closed surface one to one on a sphere, with little change of areas and shapes")
       .description(
           R"(Maps a closed surface without handles onto a sphere of 100 mm. Vertices are removed until a tetrahedron remains and are put back one by one, so that no face ever turns over; on several levels in between the map's energy is lowered: the mean over the surface of |J|^2 / (2 d) + w (d + 1/d) / 2, with J the linear map of a face, d its ratio of areas and w the --balance between areas and shapes. The result is checked exactly in the single precision in which it is written. The sphere is rotated to agree with the surface's directions.)")
@@ -63,7 +63,7 @@ void write(Context& context, const TriangleMesh& surface, const sphere::SphereMa
   writeTextFile(context.output("evolution.tsv"), tableOf(map.levels));
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const SphereSettings& s) {
   const auto loaded = readSurface(context, "SURFACE", s.surface, s.reading);
   sphere::requireSphere(loaded.mesh, s.surface);
   sayHowRead(context, loaded.origin);
@@ -91,7 +91,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command sphereCommand() {
-  return makeCommand<Settings>("sphere", declare, run);
+  return makeCommand<SphereSettings>("sphere", declare, run);
 }
 
 }  // namespace explica::app

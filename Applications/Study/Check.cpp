@@ -9,11 +9,11 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct StudyCheckSettings {
   std::string study;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, StudyCheckSettings& s) {
   d.synopsis("whether a study file can be run")
       .description(
           "Checks the file against the schema and each subject's input, matrix and regions, and "
@@ -42,7 +42,7 @@ std::string problemOf(const study::PlannedSubject& subject) {
   return {};
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const StudyCheckSettings& s) {
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::Study study = study::planStudy(file, studyPathOptions());
   std::size_t runs = 0, problems = 0;
@@ -66,7 +66,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command studyCheckCommand() {
-  return makeCommand<Settings>("study check", declare, run);
+  return makeCommand<StudyCheckSettings>("study check", declare, run);
 }
 
 }  // namespace explica::app

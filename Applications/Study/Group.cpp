@@ -18,14 +18,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct StudyGroupSettings {
   std::string study;
   std::string out;
   bool reuse = true;
   GroupSettings group;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, StudyGroupSettings& s) {
   d.synopsis("the table of a study and its page")
       .description(
           "Writes a row for every run that the study file asks for, whatever became of it: done, "
@@ -93,7 +93,7 @@ std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& o
   return rows;
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const StudyGroupSettings& s) {
   const study::StudyFile file = readCheckedStudy(s.study);
   const study::Study study = study::planStudy(file, studyPathOptions());
   const AboutPeople about = aboutOf(file);
@@ -116,7 +116,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command studyGroupCommand() {
-  return makeCommand<Settings>("study group", declare, run);
+  return makeCommand<StudyGroupSettings>("study group", declare, run);
 }
 
 }  // namespace explica::app

@@ -24,7 +24,7 @@ std::string smoothName(const Member& member) {
 }
 
 /// Writes the people's smoothed maps of a side.
-void smoothSide(Context& context, const Side& side, const People& people, double fwhm) {
+void smoothSide(Context& context, const GroupSide& side, const People& people, double fwhm) {
   if (!side.surface) {
     throw InvalidInput("--model: the template has no surfaces to smooth maps on");
   }
@@ -46,18 +46,18 @@ void smoothSide(Context& context, const Side& side, const People& people, double
 }
 
 /// The lists that glm reads: people's maps, and what is known of them with their reports.
-void writeLists(Context& context, const std::vector<Side>& sides, const People& people,
+void writeLists(Context& context, const std::vector<GroupSide>& sides, const People& people,
                 const AboutPeople& about) {
   auto columns = columnsOf(about);
   std::erase(columns, "report");  // ours
   std::string list = "participant_id", table = "participant_id\treport";
-  for (const Side& side : sides) list += side.hemisphere == "L" ? "\tleft" : "\tright";
+  for (const GroupSide& side : sides) list += side.hemisphere == "L" ? "\tleft" : "\tright";
   for (const std::string& column : columns) table += "\t" + column;
   list += "\n";
   table += "\n";
   for (const auto& [name, found] : people) {
     list += name;
-    for (const Side& side : sides) list += "\t" + smoothName(*found.at(side.hemisphere));
+    for (const GroupSide& side : sides) list += "\t" + smoothName(*found.at(side.hemisphere));
     list += "\n";
     const study::StudyRow& row = *found.begin()->second->row;
     table += name + "\t" + (row.report.empty() ? "n/a" : "../../" + row.report.generic_string()) +
@@ -71,16 +71,17 @@ void writeLists(Context& context, const std::vector<Side>& sides, const People& 
 
 /// Fits the model to the smoothed thickness of people with all sides.
 void fitModel(Context& context, const GroupSettings& s, const std::vector<Member>& members,
-              const std::vector<Side>& sides, const AboutPeople& about, const std::string& entity) {
+              const std::vector<GroupSide>& sides, const AboutPeople& about,
+              const std::string& entity) {
   People people;
   for (const Member& member : members) {
     if (member.reason.empty()) people[member.row->participant][member.row->hemisphere] = &member;
   }
   std::erase_if(people, [&](const auto& person) { return person.second.size() < sides.size(); });
-  for (const Side& side : sides) smoothSide(context, side, people, s.fwhm);
+  for (const GroupSide& side : sides) smoothSide(context, side, people, s.fwhm);
   writeLists(context, sides, people, about);
   Json surfaces = Json::array(), atlases = Json::array();
-  for (const Side& side : sides) {
+  for (const GroupSide& side : sides) {
     const std::string stem = "group/hemi-" + side.hemisphere + "_" + entity;
     surfaces.push_back(context.output(stem + "_midthickness.surf.gii").string());
     if (side.regions) atlases.push_back(context.output(stem + "_regions.label.gii").string());

@@ -30,7 +30,7 @@ struct Member {
 };
 
 /// A side of the group: its surfaces, and mean and deviation of each measure.
-struct Side {
+struct GroupSide {
   std::string hemisphere;
   Eigen::Index vertices = 0;
   std::optional<TriangleMesh> surface;  ///< the template's middle surface; none if it has none
@@ -48,13 +48,13 @@ struct Side {
                                       std::optional<Eigen::Index> count);
 
 /// Mean and deviation over those who are in the group.
-[[nodiscard]] Side gather(Context& context, const std::vector<Member>& members,
-                          const std::string& hemisphere);
-void writeSide(Context& context, const Side& side, const std::string& entity);
+[[nodiscard]] GroupSide gather(Context& context, const std::vector<Member>& members,
+                               const std::string& hemisphere);
+void writeSide(Context& context, const GroupSide& side, const std::string& entity);
 /// A person's z-maps, and what they come to.
-void compare(Context& context, const Member& member, const Side& side);
+void compare(Context& context, const Member& member, const GroupSide& side);
 /// Mean and deviation of the thickness on the inflated surface, both sides of each hemisphere.
-void drawGroup(Context& context, const std::vector<Side>& sides);
+void drawGroup(Context& context, const std::vector<GroupSide>& sides);
 
 /// Names of what is known of people, and the cells of one of them.
 [[nodiscard]] std::vector<std::string> columnsOf(const AboutPeople& about);
@@ -63,6 +63,7 @@ void drawGroup(Context& context, const std::vector<Side>& sides);
 
 /// Fits the model to the smoothed thickness of people with all sides.
 void fitModel(Context& context, const GroupSettings& s, const std::vector<Member>& members,
-              const std::vector<Side>& sides, const AboutPeople& about, const std::string& entity);
+              const std::vector<GroupSide>& sides, const AboutPeople& about,
+              const std::string& entity);
 
 }  // namespace explica::app

@@ -24,7 +24,7 @@ using provenance::Json;
 using statistics::GroupMaps;
 
 /// The template's middle surface and regions at the maps' vertices; none where it has none.
-void readTemplate(Context& context, const Member& member, Side& side) {
+void readTemplate(Context& context, const Member& member, GroupSide& side) {
   int level = 0;
   while (level < 7 && 10 * (Eigen::Index{1} << (2 * level)) + 2 < side.vertices) ++level;
   const TriangleMesh sphere = maps::fsaverageSphere(level);
@@ -74,8 +74,9 @@ Eigen::VectorXd readMap(const Member& member, std::size_t measure,
   return values;
 }
 
-Side gather(Context& context, const std::vector<Member>& members, const std::string& hemisphere) {
-  Side side;
+GroupSide gather(Context& context, const std::vector<Member>& members,
+                 const std::string& hemisphere) {
+  GroupSide side;
   side.hemisphere = hemisphere;
   const Member* first = nullptr;
   for (const Member& member : members) {
@@ -101,7 +102,7 @@ Side gather(Context& context, const std::vector<Member>& members, const std::str
   return side;
 }
 
-void writeSide(Context& context, const Side& side, const std::string& entity) {
+void writeSide(Context& context, const GroupSide& side, const std::string& entity) {
   const std::string stem = "group/hemi-" + side.hemisphere + "_" + entity + "_";
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     const GroupMaps& group = side.groups[m];
@@ -122,7 +123,7 @@ void writeSide(Context& context, const Side& side, const std::string& entity) {
   io::writeGiftiSurface(context.output(stem + "midthickness.surf.gii"), *side.surface, metadata);
 }
 
-void compare(Context& context, const Member& member, const Side& side) {
+void compare(Context& context, const Member& member, const GroupSide& side) {
   std::vector<io::VertexMap> maps;
   for (std::size_t m = 0; m < kMeasures.size(); ++m) {
     const bool inGroup = member.reason.empty();
@@ -136,8 +137,8 @@ void compare(Context& context, const Member& member, const Side& side) {
                       structureOf(side.hemisphere));
 }
 
-void drawGroup(Context& context, const std::vector<Side>& sides) {
-  for (const Side& side : sides) {
+void drawGroup(Context& context, const std::vector<GroupSide>& sides) {
+  for (const GroupSide& side : sides) {
     if (!side.surface) continue;
     using report::ViewName;
     const bool left = side.hemisphere == "L";

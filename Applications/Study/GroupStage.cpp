@@ -150,7 +150,8 @@ std::string regionTable(const std::vector<Member>& members, const AboutPeople& a
   return text;
 }
 
-std::string pagePart(const GroupSummary& group, const std::vector<Side>& sides, bool modelled) {
+std::string pagePart(const GroupSummary& group, const std::vector<GroupSide>& sides,
+                     bool modelled) {
   std::string html = "<section id=\"group\"><h2>Together on the template</h2>\n<p>" +
                      std::to_string(group.in.size()) + " hemispheres are in the group's numbers, " +
                      std::to_string(group.out.size()) +
@@ -161,7 +162,7 @@ std::string pagePart(const GroupSummary& group, const std::vector<Side>& sides, 
     for (const std::string& one : group.out) html += "<li>" + escapeHtml(one) + "</li>";
     html += "</ul>\n";
   }
-  for (const Side& side : sides) {
+  for (const GroupSide& side : sides) {
     if (!side.surface) continue;
     for (const char* what : {"mean", "deviation"}) {
       if (side.people < 2 && std::string(what) == "deviation") continue;
@@ -229,7 +230,7 @@ std::string writeGroup(Context& context, const GroupSettings& s, const AboutPeop
                           : summary.out.push_back(label + ": " + study::cellText(member.reason));
     if (member.reason.empty()) hemispheres.insert(member.row->hemisphere);
   }
-  std::vector<Side> sides;
+  std::vector<GroupSide> sides;
   for (const std::string& hemisphere : hemispheres) {
     sides.push_back(gather(context, members, hemisphere));
     writeSide(context, sides.back(), summary.space);

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
-struct Settings {
+struct StudyHeartsSettings {
   std::string dataset;
   std::string out;
   std::vector<std::string> participants;
@@ -29,7 +29,7 @@ struct Settings {
   Invocation heart;  ///< whose options are taken over
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, StudyHeartsSettings& s) {
   d.synopsis("a folder of hearts, person by person, to one table")
       .description(
           "Takes every person's label volumes through `explica heart` into OUT_DIR/PERSON/heart "
@@ -70,7 +70,7 @@ void declare(Declaration& d, Settings& s) {
 }
 
 /// @return false if it failed: the reason is then in problem.txt in its folder
-bool doHeart(Context& context, const Settings& s, const study::HeartSubject& subject,
+bool doHeart(Context& context, const StudyHeartsSettings& s, const study::HeartSubject& subject,
              Termination& worst) {
   const std::string name = (subject.folder / "heart").generic_string();
   const fs::path folder = context.outputFolder() / name;
@@ -109,7 +109,7 @@ void describeDerivative(const fs::path& out) {
   writeTextFile(out / ".bidsignore", "*/heart/\n*/*/heart/\nhearts.*\nindex.html\n");
 }
 
-void writeTables(Context& context, const Settings& s, const study::HeartLayout& layout) {
+void writeTables(Context& context, const StudyHeartsSettings& s, const study::HeartLayout& layout) {
   const auto everybody = study::findHearts(s.dataset, {}, layout);
   const auto rows =
       study::heartRows(context.outputFolder(), everybody, study::aboutParticipants(s.dataset));
@@ -119,7 +119,7 @@ void writeTables(Context& context, const Settings& s, const study::HeartLayout& 
   context.result("rows", rows.size());
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const StudyHeartsSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   study::HeartLayout layout;
   if (!s.endings.empty()) layout.endings = s.endings;
@@ -153,7 +153,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command studyHeartsCommand() {
-  return makeCommand<Settings>("study hearts", declare, run);
+  return makeCommand<StudyHeartsSettings>("study hearts", declare, run);
 }
 
 }  // namespace explica::app

@@ -14,14 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct StudyListSettings {
   std::string study;
   std::optional<std::string> out;
   bool todo = false;
   bool keys = false;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, StudyListSettings& s) {
   d.synopsis("the subjects of a study, one a line, for schedulers")
       .description(
           "With --todo only those whose work is not settled: OUT_DIR/state holds no file of theirs "
@@ -37,7 +37,7 @@ void declare(Declaration& d, Settings& s) {
   d.find("OUT_DIR")->required = false;
 }
 
-Termination run(Context&, const Settings& s) {
+Termination run(Context&, const StudyListSettings& s) {
   if (s.todo && !s.out) {
     throw UsageError("--todo needs OUT_DIR, the folder of the results, after the study file");
   }
@@ -60,7 +60,7 @@ Termination run(Context&, const Settings& s) {
 }  // namespace
 
 Command studyListCommand() {
-  return makeCommand<Settings>("study list", declare, run);
+  return makeCommand<StudyListSettings>("study list", declare, run);
 }
 
 }  // namespace explica::app

@@ -22,14 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
-struct Settings {
+struct StudyParticipantSettings {
   std::string study;
   std::string out;
   std::vector<std::string> participants;
   Keep keep = Keep::All;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, StudyParticipantSettings& s) {
   d.synopsis("the runs of a study's subjects")
       .description(
           "Takes each subject's hemispheres and regions through `explica run` into "
@@ -103,17 +103,18 @@ bool doRun(Context& context, const fs::path& folder, const study::Participant& p
   }
 }
 
-fs::path folderOf(const Settings& s, const study::PlannedRun& run) {
+fs::path folderOf(const StudyParticipantSettings& s, const study::PlannedRun& run) {
   return fs::path(s.out) / "runs" / run.folder;
 }
 
 /// What was kept of a subject is what doing it again would give.
-bool allKept(const Settings& s, const study::PlannedSubject& subject, const std::string& key) {
+bool allKept(const StudyParticipantSettings& s, const study::PlannedSubject& subject,
+             const std::string& key) {
   return std::all_of(subject.runs.begin(), subject.runs.end(),
                      [&](const study::PlannedRun& run) { return isKept(folderOf(s, run), key); });
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const StudyParticipantSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const bool dry = context.given("dry-run");
   const study::StudyFile file = readCheckedStudy(s.study);
@@ -166,7 +167,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command studyParticipantCommand() {
-  return makeCommand<Settings>("study participant", declare, run);
+  return makeCommand<StudyParticipantSettings>("study participant", declare, run);
 }
 
 }  // namespace explica::app

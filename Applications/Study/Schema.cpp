@@ -9,9 +9,9 @@
 namespace explica::app {
 namespace {
 
-struct Settings {};
+struct StudySchemaSettings {};
 
-void declare(Declaration& d, Settings&) {
+void declare(Declaration& d, StudySchemaSettings&) {
   d.synopsis("the JSON schema of study files, for editors and other programs")
       .description(
           "Generated from the declarations of `explica run`, so that a study file may hold exactly "
@@ -20,7 +20,7 @@ void declare(Declaration& d, Settings&) {
       .withoutOutput();
 }
 
-Termination run(Context&, const Settings&) {
+Termination run(Context&, const StudySchemaSettings&) {
   std::cout << provenance::textOf(studyFileSchema(), 2) << "\n";
   return Termination::NotRun;
 }
@@ -28,7 +28,7 @@ Termination run(Context&, const Settings&) {
 }  // namespace
 
 Command studySchemaCommand() {
-  return makeCommand<Settings>("study schema", declare, run);
+  return makeCommand<StudySchemaSettings>("study schema", declare, run);
 }
 
 }  // namespace explica::app

@@ -8,7 +8,7 @@
 namespace explica::app {
 namespace {
 
-void declareOutputs(Declaration& d) {
+void declareSurfaceOutputs(Declaration& d) {
   d.output("white.surf.gii", FileKind::Surface, "white surface")
       .output("mid.surf.gii", FileKind::Surface, "surface at half depth, same faces")
       .output("pial.surf.gii", FileKind::Surface, "outer surface, same faces")
@@ -156,7 +156,7 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .needs({"fluid", "t2"}, {"image"})
       .needs({"surface-space"}, {"white-surface"});
   declareAccept(d, s.accept);
-  declareOutputs(d);
+  declareSurfaceOutputs(d);
   d.results<surface::SurfaceSummary>();
 }
 

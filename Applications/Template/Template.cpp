@@ -25,13 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Settings {
+struct TemplateSettings {
   std::vector<std::string> people;
   std::string density = "fsaverage5";
   sphere::AverageOptions average;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, TemplateSettings& s) {
   d.synopsis("a template of people's own: mean folds, surfaces and regions, without favour for any")
       .description(
           "Registers all people to their mean, again and again, and moves the mean each time to "
@@ -164,13 +164,13 @@ std::optional<io::LabelMap> majority(Context& context, const std::vector<Person>
 }
 
 /// One hemisphere of all who have it.
-struct Side {
+struct TemplateSide {
   std::string structure;
   std::vector<Person> people;
   std::vector<sphere::FoldingSphere> folds;
 };
 
-void writeSide(Context& context, const Side& side, const sphere::SphereAverage& average) {
+void writeSide(Context& context, const TemplateSide& side, const sphere::SphereAverage& average) {
   const std::string stem = side.structure == "CortexRight" ? "hemi-R_" : "hemi-L_";
   const sphere::FoldingSphere& folding = average.folding;
   io::SurfaceMetadata metadata;
@@ -203,7 +203,7 @@ void writeSide(Context& context, const Side& side, const sphere::SphereAverage& 
   surface("sphere", folding.sphere);
 }
 
-std::vector<Person> peopleOf(const Settings& s, const std::string& structure) {
+std::vector<Person> peopleOf(const TemplateSettings& s, const std::string& structure) {
   std::vector<Person> people;
   for (const std::string& given : s.people) {
     for (const fs::path& folder : peopleIn(given)) {
@@ -214,10 +214,10 @@ std::vector<Person> peopleOf(const Settings& s, const std::string& structure) {
 }
 
 /// Reads the hemispheres that two people have, or more.
-std::vector<Side> readSides(Context& context, const Settings& s) {
-  std::vector<Side> sides;
+std::vector<TemplateSide> readSides(Context& context, const TemplateSettings& s) {
+  std::vector<TemplateSide> sides;
   for (const std::string structure : {"CortexLeft", "CortexRight"}) {
-    Side side{structure, peopleOf(s, structure), {}};
+    TemplateSide side{structure, peopleOf(s, structure), {}};
     if (side.people.size() == 1) {
       context.warn("'" + side.people.front().name + "' alone has the " +
                    (structure == "CortexLeft" ? "left" : "right") + " hemisphere: it is left out");
@@ -232,16 +232,16 @@ std::vector<Side> readSides(Context& context, const Settings& s) {
                      "hemisphere; explica run makes them");
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const TemplateSettings& s) {
   const auto level = maps::fsaverageLevel(s.density);
   if (!level) {
     throw UsageError("--density: '" + s.density +
                      "' is none of fsaverage3 ... fsaverage6, fsaverage");
   }
-  const std::vector<Side> sides = readSides(context, s);
+  const std::vector<TemplateSide> sides = readSides(context, s);
   sphere::AverageSummary summary;
   Termination worst = Termination::NotRun;
-  for (const Side& side : sides) {
+  for (const TemplateSide& side : sides) {
     auto step = context.step(side.structure == "CortexRight" ? "right" : "left");
     const auto average = sphere::averageSpheres(side.folds, maps::fsaverageSphere(*level),
                                                 s.average, context.monitor());
@@ -258,7 +258,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command templateCommand() {
-  return makeCommand<Settings>("template", declare, run);
+  return makeCommand<TemplateSettings>("template", declare, run);
 }
 
 }  // namespace explica::app

@@ -24,7 +24,7 @@ namespace explica::app {
 
 namespace {
 
-struct Settings {
+struct ThicknessSettings {
   std::optional<std::string> labels;
   std::optional<std::string> innerLevel;
   std::optional<std::string> outerLevel;
@@ -35,7 +35,7 @@ struct Settings {
   std::vector<std::string> accept;
 };
 
-void declareOutputs(Declaration& d) {
+void declareThicknessOutputs(Declaration& d) {
   d.output("harmonic.nii.gz", FileKind::Volume, "u: 0 at the inner boundary to 1 at the outer one")
       .output("thickness.nii.gz", FileKind::Volume,
               "length of the trajectory, mm; 0 off the tissue")
@@ -56,7 +56,7 @@ void declareOutputs(Declaration& d) {
               "where sulci are recovered: 1 beside a boundary that was put between banks");
 }
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ThicknessSettings& s) {
   d.synopsis("thickness, depth and layers of the tissue between two boundaries")
       .description(
           R"(Solves Laplace's equation between the inner and the outer boundary of a tissue such as cortex or heart muscle, follows the field lines that join the boundaries, and measures along them. The boundary lies between voxel centres: where level sets cross, or where a smooth surface fits the labels. Sulci whose banks touch are opened first.)")
@@ -95,11 +95,11 @@ void declare(Declaration& d, Settings& s) {
       .excludes("inner-level", {"inner", "tissue", "outer"})
       .needs({"level", "level-inside"}, {"inner-level"});
   declareAccept(d, s.accept);
-  declareOutputs(d);
+  declareThicknessOutputs(d);
   d.results<correspondence::Measurement>();
 }
 
-harmonic::Annulus readAnnulus(Context& context, const Settings& s) {
+harmonic::Annulus readAnnulus(Context& context, const ThicknessSettings& s) {
   if (s.innerLevel.has_value() != s.outerLevel.has_value()) {
     throw UsageError("--inner-level and --outer-level belong together; one of them is missing");
   }
@@ -189,7 +189,7 @@ void writeGrid(Context& context, const correspondence::AnatomicalGrid& grid) {
                {{"depth", "", grid.depth}, {"thickness", "mm", grid.thickness}});
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const ThicknessSettings& s) {
   keepFreedMemory();
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
@@ -207,7 +207,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command thicknessCommand() {
-  return makeCommand<Settings>("thickness", declare, run);
+  return makeCommand<ThicknessSettings>("thickness", declare, run);
 }
 
 }  // namespace explica::app

@@ -67,7 +67,7 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
       .output("intersections.tsv", FileKind::Table,
               "pairs of faces that intersect at the start, where, and whether --repair parted them")
       .output("frames/frame-*.surf.gii", FileKind::Surface, "--frames states on the way")
-      .varyingOutput(kStateFile, FileKind::Any, "what --resume needs")
+      .varyingOutput(kUnfoldingState, FileKind::Any, "what --resume needs")
       .results<unfolding::StartSummary>()
       .results<unfolding::UnfoldSummary>();
 }

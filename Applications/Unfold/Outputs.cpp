@@ -110,7 +110,7 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
                 {"seen before", "", faceSeenBefore},
                 {"seen after", "", m.seenAfter.face}});
   writeTextFile(context.output("evolution.tsv"), unfolding::evolutionTable(u.result.history));
-  unfolding::writeCheckpoint(context.output(kStateFile), u.result.checkpoint);
+  unfolding::writeCheckpoint(context.output(kUnfoldingState), u.result.checkpoint);
 }
 
 /// @param before  pairs that cross at the start, among the faces that are written

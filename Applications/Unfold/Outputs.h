@@ -12,7 +12,7 @@
 namespace explica::app {
 
 inline constexpr char kReferenceFile[] = "reference.surf.gii";
-inline constexpr char kStateFile[] = "unfolding.state";
+inline constexpr char kUnfoldingState[] = "unfolding.state";
 
 /// A finished unfolding and what it came from.
 struct Unfolded {

@@ -202,9 +202,6 @@ void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
               pairs, std::ceil(pairs / kPairsPerSecond)));
 }
 
-// What comes after the iterations, in times of the start: it tests, measures and writes, too.
-constexpr double kRest = 2, kEachFrame = 0.2;
-
 Termination run(Context& context, const UnfoldSettings& s) {
   keepFreedMemory();
   const Stopwatch seconds;
@@ -216,7 +213,7 @@ Termination run(Context& context, const UnfoldSettings& s) {
   u.surround = s.unfold.unfolder.surround;
   u.goal = s.unfold.targetVisibility.value_or(1.0);
   std::optional<unfolding::Checkpoint> checkpoint;
-  if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kStateFile);
+  if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kUnfoldingState);
   const Positions read = u.before.positions;
   u.crossings = checkStart(context, s, u.chosen, u.view, u.before);
   if (u.before.positions != read) {  // the result is compared with what a file holds
@@ -228,6 +225,8 @@ Termination run(Context& context, const UnfoldSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
+    // What comes after the iterations, in times of the start: it tests, measures and writes, too.
+    constexpr double kRest = 2, kEachFrame = 0.2;
     const TimeKept rest(u.secondsStart * (kRest + kEachFrame * s.unfold.frames));
     u.result = unfolding::unfold(u.before, u.chosen, u.view, s.unfold, context.monitor(),
                                  checkpoint ? &*checkpoint : nullptr);

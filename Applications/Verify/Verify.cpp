@@ -12,13 +12,13 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct VerifySettings {
   std::string record;
   bool deep = false;
   bool provJson = false;
 };
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, VerifySettings& s) {
   d.synopsis("compare inputs and outputs of a run with the hashes in its record")
       .description(
           R"(Prints one line per file: same, CHANGED or MISSING. Ends with exit code 2 if any file is not as recorded.)")
@@ -48,7 +48,7 @@ const char* wordFor(provenance::FileState state) {
   return "";
 }
 
-Termination run(Context& context, const Settings& s) {
+Termination run(Context& context, const VerifySettings& s) {
   const std::filesystem::path record = provenance::recordAt(s.record);
   if (s.provJson) {
     using provenance::LocatedRecord;
@@ -80,7 +80,7 @@ Termination run(Context& context, const Settings& s) {
 }  // namespace
 
 Command verifyCommand() {
-  return makeCommand<Settings>("verify", declare, run);
+  return makeCommand<VerifySettings>("verify", declare, run);
 }
 
 }  // namespace explica::app

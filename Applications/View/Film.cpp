@@ -7,9 +7,8 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
-#include "Explica/Provenance/Json.h"
-#include "Explica/Provenance/Record.h"
 #include "Explica/Report/Film.h"
+#include "OpenedFolders.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -35,11 +34,6 @@ std::vector<fs::path> framesOf(const fs::path& folder) {
                        ": holds no frames/frame-*.surf.gii; unfold with --frames");
   }
   return files;
-}
-
-Json summaryOf(const fs::path& folder) {
-  const fs::path file = folder / provenance::kSummaryName;
-  return fs::exists(file) ? provenance::readJson(file) : Json::object();
 }
 
 std::string captionOf(const Json& summary, std::size_t frame, std::size_t count) {

@@ -7,7 +7,6 @@
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
-#include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Provenance/Verify.h"
 #include "Explica/Unfolding/Region.h"
@@ -37,11 +36,6 @@ std::vector<fs::path> inputsOf(const fs::path& folder, std::string_view role) {
     if (fs::exists(path)) found.push_back(path);
   }
   return found;
-}
-
-provenance::Json summaryOf(const fs::path& folder) {
-  const fs::path file = folder / provenance::kSummaryName;
-  return fs::exists(file) ? provenance::readJson(file) : provenance::Json::object();
 }
 
 std::vector<fs::path> filesEnding(const fs::path& folder, std::string_view ending) {
@@ -224,6 +218,11 @@ ShownSurface middleOf(const fs::path& folder) {
 }
 
 }  // namespace
+
+provenance::Json summaryOf(const fs::path& folder) {
+  const fs::path file = folder / provenance::kSummaryName;
+  return fs::exists(file) ? provenance::readJson(file) : provenance::Json::object();
+}
 
 bool isUnfolding(const fs::path& folder) {
   return fs::exists(folder / "unfolded.surf.gii") && fs::exists(folder / "region.label.gii");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Provenance/Json.h"
 #include "Explica/Viewer/Window.h"
 #include "ShownSurface.h"
 
@@ -10,6 +11,8 @@
 
 namespace explica::app {
 
+/// A folder's summary.json; empty where there is none.
+[[nodiscard]] provenance::Json summaryOf(const std::filesystem::path& folder);
 /// True if the folder holds what `explica unfold` writes.
 [[nodiscard]] bool isUnfolding(const std::filesystem::path& folder);
 /// True if the folder holds what `explica flatten` writes.

@@ -25,7 +25,7 @@
 namespace explica::app {
 namespace {
 
-struct Settings {
+struct ViewSettings {
   std::vector<std::string> files;
   std::optional<std::string> screenshot;
   std::optional<std::string> film;
@@ -50,7 +50,7 @@ struct Settings {
 const std::vector<std::string> kOfWindow = {
     "vertex", "radius", "distance", "surround", "target-visibility", "save", "script"};
 
-void declare(Declaration& d, Settings& s) {
+void declare(Declaration& d, ViewSettings& s) {
   d.synopsis("choose and steer an unfolding in a window; pictures and films without one")
       .description(
           R"(Without --screenshot or --film a window opens on a surface, or on a folder of `explica unfold`, `flatten` or `sample`: pick a centre (C), take the view as viewpoint (V), set the radius, run and pause (Space), step back and forth, save (W); F1 shows every key. Maps, labels and folders named after the surface are shown with it: of a folder of `explica sample` the maps, of `explica flatten` the patch and its flat map (`explica report` shows curves over the depth, and volumes on the flat map depth by depth). Where a map was not measured (off the valid.shape.gii beside it, thickness 0) it is grey. Surfaces are drawn with a map or labels on their vertices, from one or more sides; a volume is shown in slices with the cut lines of the surfaces named after it (the first red, the second yellow); a folder of `explica unfold` is shown as its evolution with --film. Pictures and films are drawn on the processor, without a display.)")
@@ -118,7 +118,7 @@ void paintLabels(const ShownSurface& surface, const std::string& file,
   }
 }
 
-report::SurfacePaint readPaint(const Settings& s, const ShownSurface& surface) {
+report::SurfacePaint readPaint(const ViewSettings& s, const ShownSurface& surface) {
   if (s.map && s.labels) {
     throw UsageError("a picture shows --map or --labels: leave one of them out");
   }
@@ -150,7 +150,7 @@ report::SurfacePaint readPaint(const Settings& s, const ShownSurface& surface) {
   return paint;
 }
 
-std::vector<report::FigureView> viewsOf(const Settings& s, const report::SurfacePaint& paint) {
+std::vector<report::FigureView> viewsOf(const ViewSettings& s, const report::SurfacePaint& paint) {
   std::vector<report::FigureView> views;
   if (s.direction) {
     report::FigureView view;
@@ -174,7 +174,7 @@ std::vector<report::FigureView> viewsOf(const Settings& s, const report::Surface
   return views;
 }
 
-report::Picture drawSlices(const Settings& s) {
+report::Picture drawSlices(const ViewSettings& s) {
   const Volume<float> image = io::readScalars(s.files.front()).volume;
   std::vector<TriangleMesh> meshes;
   for (std::size_t f = 1; f < s.files.size(); ++f)
@@ -187,7 +187,7 @@ report::Picture drawSlices(const Settings& s) {
   return report::sliceFigure(image, contours, s.slices, s.picture.height / 3);
 }
 
-report::Picture drawSurfaces(const Settings& s) {
+report::Picture drawSurfaces(const ViewSettings& s) {
   std::vector<report::Picture> figures;
   for (const std::string& file : s.files) {
     if (std::filesystem::is_directory(file)) {
@@ -204,7 +204,7 @@ report::Picture drawSurfaces(const Settings& s) {
 }
 
 /// The first file is a surface or an unfolding; the others are opened on it.
-void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
+void openWindow(Context& context, const ViewSettings& s, const ShowWindow& show) {
   if (isVolume(s.files.front())) {
     throw UsageError(
         "the window shows a surface: name one first; or write a picture of slices with "
@@ -242,7 +242,7 @@ void openWindow(Context& context, const Settings& s, const ShowWindow& show) {
   steer(context, start, s.reading, direction, std::move(opened), s.window, show);
 }
 
-Termination run(Context& context, const Settings& s, const ShowWindow& show) {
+Termination run(Context& context, const ViewSettings& s, const ShowWindow& show) {
   if (!s.screenshot && !s.film) {
     const StopScope window(nullptr);  // its user ends it; no exception may pass its library
     openWindow(context, s, show);
@@ -277,7 +277,7 @@ Termination run(Context& context, const Settings& s, const ShowWindow& show) {
 
 Command viewCommandShowing(ShowWindow show) {
   return Command("view", [show] {
-    auto settings = std::make_shared<Settings>();
+    auto settings = std::make_shared<ViewSettings>();
     Invocation invocation;
     declare(invocation.declaration, *settings);
     invocation.run = [settings, show](Context& context) { return run(context, *settings, show); };

@@ -123,6 +123,36 @@ TEST(HeartCommand, TellsVolumesThicknessAndThickeningOfABeat) {
   EXPECT_EQ(explica({"report", folder / "out", "--out", folder / "shown"}).exitCode, 2);
 }
 
+TEST(HeartCommand, ImagesLieBeneathTheBoundariesAndBeat) {
+  const TemporaryFolder folder;
+  makeBeat(folder);
+  const std::string first = folder / "beat/frame-0000.nii.gz";
+  const std::string second = folder / "beat/frame-0001.nii.gz";  // labels are an image, too
+  const auto made = explica(heart(folder, {"--image", first, second}));
+  ASSERT_EQ(made.exitCode, 0) << made;
+  for (const char* file : {"slices_ed.svg", "slices_es.svg"}) {
+    const std::string drawing = readText(folder / ("out/" + std::string(file)));
+    EXPECT_NE(drawing.find("<image"), std::string::npos) << file;
+    EXPECT_NE(drawing.find("boundaries on the image"), std::string::npos) << file;
+    EXPECT_NE(drawing.find("<polyline"), std::string::npos) << file;
+    EXPECT_EQ(drawing.find("left out: opening"), std::string::npos) << file;
+  }
+  EXPECT_EQ(readText(folder / "out/slices.gif").find("GIF89a"), 0U);
+  const auto report = explica({"report", folder / "out", "--out", folder / "shown"});
+  ASSERT_EQ(report.exitCode, 0) << report;
+  const std::string page = readText(folder / "shown/report.html");
+  EXPECT_NE(page.find("image/gif"), std::string::npos);
+  EXPECT_NE(page.find("href='#pictures'"), std::string::npos);
+  // One frame for two, and one of other voxels.
+  const auto few = explica(heart(folder, {"--image", first}));
+  EXPECT_EQ(few.exitCode, 2) << few;
+  EXPECT_NE(few.err.find("1 frames, but 2 of labels"), std::string::npos) << few;
+  ASSERT_EQ(explica({"phantom", "shell", "--size", "32", "--out", folder / "shell"}).exitCode, 0);
+  const auto other = explica(heart(folder, {"--image", first, folder / "shell/labels.nii.gz"}));
+  EXPECT_EQ(other.exitCode, 2) << other;
+  EXPECT_NE(other.err.find("lie elsewhere"), std::string::npos) << other;
+}
+
 TEST(HeartCommand, FindsTheFramesOrTakesThem) {
   TemporaryFolder folder;
   makeBeat(folder);

@@ -67,7 +67,7 @@ explica flatten unfolded/unfolded.surf.gii --surfaces surfaces --volumes shell/l
        R"(printf 'participant_id,age,thickness\ns1,20,2.6\ns2,30,2.5\ns3,40,2.5\ns4,50,2.3\ns5,60,2.2\n' > people.csv
 explica glm people.csv --model 'thickness ~ age' --permutations 100 --out glm)"},
       {"heart",
-       {"preset", "cavity", "wall", "rv", "phases", "rv-insertion"},
+       {"image", "preset", "cavity", "wall", "rv", "phases", "rv-insertion"},
        R"(explica phantom ventricle --size 64 --spacing 2 --slice 8 --frames 2 --out beat
 explica heart beat/frame-0000.nii.gz beat/frame-0001.nii.gz --out heart)"},
       {"history", {}, R"(explica phantom shell --size 24 --out shell

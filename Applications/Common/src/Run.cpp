@@ -122,6 +122,7 @@ Monitor monitorOf(Run& run, Console& console, provenance::Record& record, std::m
   Monitor monitor;
   monitor.onWarning = [&](const std::string& message) {
     const std::lock_guard<std::mutex> lock(warnings);
+    if (std::ranges::count(record.warnings, message) > 0) return;  // of a file that is read twice
     record.warnings.push_back(message);
     if (run.parent) {
       run.parent->warn(run.name + message);  // it puts its own name before

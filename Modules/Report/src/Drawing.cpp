@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Drawing.h"
 
+#include "Encoding.h"
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
@@ -331,6 +332,13 @@ std::string unitText(std::string_view unit) {
     }
   }
   return text;
+}
+
+std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
+                     const Eigen::Vector2d& size) {
+  return printed("<image x='%g' y='%g' width='%g' height='%g' href='data:image/png;base64,",
+                 corner.x(), corner.y(), size.x(), size.y()) +
+         base64(encodePng(picture)) + "'/>\n";
 }
 
 void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width,

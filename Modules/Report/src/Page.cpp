@@ -440,14 +440,16 @@ std::string lookHtml(const ReportContent& content) {
   for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
   if (!content.views.empty()) html += heading("surfaces", "Surfaces");
   for (const ReportViews& views : content.views) html += viewsHtml(views);
+  std::string pictures;
   for (const ReportPicture& picture : content.pictures) {
-    html += figureHtml(picture.id, picture.title, picture.caption, true,
-                       imageHtml(picture.picture, picture.title));
+    pictures += figureHtml(picture.id, picture.title, picture.caption, true,
+                           imageHtml(picture.picture, picture.title));
   }
   for (const ReportDrawing& drawing : content.drawings) {
     if (!drawing.guide.empty()) continue;
-    html += figureHtml(drawing.id, drawing.title, drawing.caption, true, drawingHtml(drawing));
+    pictures += figureHtml(drawing.id, drawing.title, drawing.caption, true, drawingHtml(drawing));
   }
+  if (!pictures.empty()) html += heading("pictures", "Pictures") + pictures;
   if (!content.charts.empty()) html += heading("charts", "Distributions and curves");
   html += chartsHtml(content.charts);
   return html.empty() ? html
@@ -464,10 +466,11 @@ std::string tablesHtml(const std::vector<ReportTable>& tables) {
 /// Links to the parts of the page, which stay in sight.
 std::string contentsHtml(const std::string& page) {
   constexpr std::array kParts = {
-      std::pair{"verdict", "Verdict"}, std::pair{"numbers", "Numbers"},
-      std::pair{"tables", "Tables"},   std::pair{"view3d", "3-D"},
-      std::pair{"slices", "Slices"},   std::pair{"surfaces", "Surfaces"},
-      std::pair{"charts", "Curves"},   std::pair{"made", "How it was made"}};
+      std::pair{"verdict", "Verdict"},     std::pair{"numbers", "Numbers"},
+      std::pair{"tables", "Tables"},       std::pair{"view3d", "3-D"},
+      std::pair{"slices", "Slices"},       std::pair{"surfaces", "Surfaces"},
+      std::pair{"pictures", "Pictures"},   std::pair{"charts", "Curves"},
+      std::pair{"made", "How it was made"}};
   std::string html = "<nav aria-label='Contents'>";
   for (const auto& [id, words] : kParts) {
     const std::string name = id;

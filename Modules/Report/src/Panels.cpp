@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Panels.h"
 
-#include "Encoding.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Html.h"
 #include "Explica/Core/Text.h"
@@ -48,9 +47,7 @@ struct Sheet {
 
   void add(const Picture& part, int x, int y, const std::string& title) {
     pastePicture(picture, part, x, y);
-    images += printed("<image x='%d' y='%d' width='%d' height='%d' href='data:image/png;base64,", x,
-                      y, part.width, part.height) +
-              base64(encodePng(part)) + "'/>\n";
+    images += svgImage(part, {x, y}, {part.width, part.height});
     if (title.empty()) return;
     drawText(picture, title, {x + letters, y + 1.5 * letters}, letters, kInk);
     titles += svgText(x + letters, y + 1.5 * letters, 1.4 * letters, title);

@@ -132,19 +132,26 @@ SliceFrame frameAround(SliceAxis axis, double position, const Point& low, const 
   return frame;
 }
 
-Picture renderSlice(const Volume<float>& image, const SliceFrame& frame, const ColourScale& scale,
-                    const std::vector<Contour>& contours) {
-  const PlaneAxes axes = axesOf(frame);
-  Picture picture(frame.width, frame.height, {0, 0, 0});
-  parallelFor(static_cast<std::size_t>(frame.height), 16, [&](std::size_t y) {
-    for (int x = 0; x < frame.width; ++x) {
-      const Point world = worldOf(frame, axes, x + 0.5, static_cast<double>(y) + 0.5);
+Picture renderPoints(const Volume<float>& image, int width, int height, const ColourScale& scale,
+                     const std::function<Point(double x, double y)>& worldOf) {
+  Picture picture(width, height, {0, 0, 0});
+  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t y) {
+    for (int x = 0; x < width; ++x) {
+      const Point world = worldOf(x + 0.5, static_cast<double>(y) + 0.5);
       const double value = sample(image, image.grid.toIndex(world));
       if (std::isnan(value)) continue;
       const Colour colour = scale(value);
       for (int c = 0; c < 3; ++c) picture.pixel(x, static_cast<int>(y))[c] = encodeSrgb(colour[c]);
     }
   });
+  return picture;
+}
+
+Picture renderSlice(const Volume<float>& image, const SliceFrame& frame, const ColourScale& scale,
+                    const std::vector<Contour>& contours) {
+  const PlaneAxes axes = axesOf(frame);
+  Picture picture = renderPoints(image, frame.width, frame.height, scale,
+                                 [&](double x, double y) { return worldOf(frame, axes, x, y); });
   for (const Contour& contour : contours) {
     drawSegments(picture, cutLines(*contour.mesh, frame, axes), contour.colour, contour.width);
   }

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/Geodesic.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -19,13 +20,6 @@
 
 namespace explica::unfolding {
 namespace {
-
-std::string text(double value) {
-  std::string s = std::to_string(value);
-  s.erase(s.find_last_not_of('0') + 1);
-  if (s.back() == '.') s.pop_back();
-  return s;
-}
 
 /// Diagonal of the surface's box, mm.
 double extentOf(const TriangleMesh& mesh) {
@@ -42,9 +36,9 @@ void requireNear(const TriangleMesh& mesh, const Point& wanted, std::int32_t ver
   const Point nearest = mesh.positions.row(vertex);
   const double distance = (wanted - nearest).norm(), most = farthestCentre(extentOf(mesh));
   if (distance <= most) return;
-  throw InvalidInput("center: is " + text(distance) + " mm from the surface (limit " + text(most) +
-                     " mm); nearest vertex " + std::to_string(vertex) + " at " + text(nearest[0]) +
-                     "," + text(nearest[1]) + "," + text(nearest[2]));
+  throw InvalidInput(printed(
+      "center: is %.1f mm from the surface (limit %g mm); nearest vertex %d at %.1f,%.1f,%.1f",
+      distance, most, vertex, nearest[0], nearest[1], nearest[2]));
 }
 
 std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::int32_t centre,
@@ -159,7 +153,7 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
   std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
   if (options.cone) {
     if (!(*options.cone > 0 && *options.cone < 90)) {
-      throw InvalidInput("cone: " + text(*options.cone) + " degrees is not between 0 and 90");
+      throw InvalidInput(printed("cone: %g degrees is not between 0 and 90", *options.cone));
     }
     if (viewpoints == nullptr || viewpoints->points.empty()) {
       throw InvalidInput("cone: needs a viewpoint");
@@ -183,7 +177,7 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
     }
   } else {
     if (!(options.radius > 0) || !std::isfinite(options.radius)) {
-      throw InvalidInput("radius: " + text(options.radius) + " mm is not a positive length");
+      throw InvalidInput(printed("radius: %g mm is not a positive length", options.radius));
     }
     if (options.metric == RegionMetric::Geodesic) {
       const std::array<std::int32_t, 1> source = {centre};
@@ -222,8 +216,7 @@ void requireViewFromOutside(const TriangleMesh& mesh, const visibility::Viewpoin
   const geometry::FaceTree tree(mesh);
   for (const Point& eye : eyes) {
     if (!eye.allFinite()) throw InvalidInput("viewpoint: not a finite point");
-    const std::string name =
-        "viewpoint: (" + text(eye[0]) + ", " + text(eye[1]) + ", " + text(eye[2]) + ") lies ";
+    const std::string name = printed("viewpoint: (%g, %g, %g) lies ", eye[0], eye[1], eye[2]);
     if (std::sqrt(tree.closestPoint(eye).squaredDistance) < clearance) {
       throw InvalidInput(name + "on the surface; move it away");
     }

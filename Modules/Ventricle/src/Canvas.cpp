@@ -71,19 +71,36 @@ void fillOutline(Picture& picture, const std::vector<Point2>& outline, const Col
   }
 }
 
+/// The picture over the rectangle, pixel by pixel the nearest.
+void drawImage(Picture& onto, const Picture& image, const Point2& corner, const Point2& opposite) {
+  const Point2 size = opposite - corner;
+  for (int y = static_cast<int>(corner[1]); y < std::lround(opposite[1]); ++y) {
+    for (int x = static_cast<int>(corner[0]); x < std::lround(opposite[0]); ++x) {
+      const auto* from =
+          image.pixel(static_cast<int>((x + 0.5 - corner[0]) / size[0] * image.width),
+                      static_cast<int>((y + 0.5 - corner[1]) / size[1] * image.height));
+      std::copy(from, from + 3, onto.pixel(x, y));
+    }
+  }
+}
+
 }  // namespace
 
 void Canvas::fill(std::vector<Point2> outline, const Colour& colour) {
-  shapes_.push_back({std::move(outline), colour, 0, true, {}, TextAnchor::Left});
+  shapes_.push_back({std::move(outline), colour, 0, true, {}, {}, TextAnchor::Left});
 }
 
 void Canvas::stroke(std::vector<Point2> line, const Colour& colour, double width, bool closed) {
-  shapes_.push_back({std::move(line), colour, width, closed, {}, TextAnchor::Left});
+  shapes_.push_back({std::move(line), colour, width, closed, {}, {}, TextAnchor::Left});
 }
 
 void Canvas::text(const Point2& at, std::string words, double size, const Colour& colour,
                   TextAnchor anchor) {
-  shapes_.push_back({{at}, colour, size, false, std::move(words), anchor});
+  shapes_.push_back({{at}, colour, size, false, std::move(words), {}, anchor});
+}
+
+void Canvas::image(const Point2& corner, const Point2& size, Picture picture) {
+  shapes_.push_back({{corner, corner + size}, {}, 0, true, {}, std::move(picture)});
 }
 
 void Canvas::rectangle(const Point2& corner, const Point2& size, const Colour& colour) {
@@ -106,6 +123,8 @@ std::string Canvas::svg() const {
       out += "<text x=\"" + number(s.points[0][0]) + "\" y=\"" + number(s.points[0][1]) +
              "\" font-size=\"" + number(s.width * kFontPerCapital) + "\" text-anchor=\"" + anchor +
              "\" fill=\"" + report::hexText(s.colour) + "\">" + escapeHtml(*s.words) + "</text>\n";
+    } else if (s.image) {
+      out += report::svgImage(*s.image, s.points[0], s.points[1] - s.points[0]);
     } else if (s.width == 0) {
       out += "<polygon points=\"" + listOf(s.points) + "\" fill=\"" + report::hexText(s.colour) +
              "\"/>\n";
@@ -126,6 +145,8 @@ Picture Canvas::picture(double scale) const {
     for (const Point2& p : s.points) points.emplace_back(scale * p);
     if (s.words) {
       report::drawText(picture, *s.words, points[0], scale * s.width, s.colour, s.anchor);
+    } else if (s.image) {
+      drawImage(picture, *s.image, points[0], points[1]);
     } else if (s.width == 0) {
       fillOutline(picture, points, s.colour);
     } else {

@@ -25,6 +25,8 @@ class Canvas {
   /// @param size  height of capitals
   void text(const Point2& at, std::string words, double size, const report::Colour& colour,
             report::TextAnchor anchor = report::TextAnchor::Middle);
+  /// A picture over a rectangle; in pixels, the nearest of it.
+  void image(const Point2& corner, const Point2& size, report::Picture picture);
   void rectangle(const Point2& corner, const Point2& size, const report::Colour& colour);
 
   [[nodiscard]] int width() const { return width_; }
@@ -40,6 +42,7 @@ class Canvas {
     double width = 0;  ///< of a line, height of a text's capitals; 0 fills
     bool closed = false;
     std::optional<std::string> words;
+    std::optional<report::Picture> image;  ///< between two corners
     report::TextAnchor anchor = report::TextAnchor::Left;
   };
   int width_, height_;

@@ -3,6 +3,7 @@
 #include "Canvas.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Correspondence/Trajectory.h"
+#include "Explica/Report/Mosaic.h"
 #include "Explica/Ventricle/Pictures.h"
 
 #include <Eigen/Geometry>
@@ -24,6 +25,7 @@ constexpr int kColumns = 4, kMostSlices = 12, kTrajectories = 36;
 constexpr Colour kWallColour = {0.84F, 0.74F, 0.62F};  // pale, so that lines show
 // Red, blue.
 constexpr Colour kInnerLine = {0.55F, 0.03F, 0.03F}, kOuterLine = {0.02F, 0.09F, 0.42F};
+constexpr Colour kInnerOnImage = {1, 0.12F, 0.08F}, kOuterOnImage = {0.05F, 0.6F, 1};
 constexpr Colour kPathLine = {0.05F, 0.26F, 0.12F};  // green
 
 /// Colour of what is left out, by LeftOut.
@@ -72,6 +74,29 @@ View viewOf(const Beat& beat, const Frame& frame) {
   return view;
 }
 
+/// White at the brightest of the heart, so that fat around it does not leave it dim.
+report::ColourScale greyOf(const Volume<float>& image, const Volume<Label>& heart) {
+  Volume<float> subject(heart.grid);
+  std::copy(heart.data.begin(), heart.data.end(), subject.data.begin());
+  return report::greyScale(image, &subject);
+}
+
+/// A slice of the image as the tile shows it, two pixels a pixel of the drawing.
+report::Picture imageOf(const View& view, const Volume<float>& image,
+                        const report::ColourScale& grey, int k) {
+  const Point origin = image.grid.toWorld(Vector(0, 0, k));
+  const Vector i = image.grid.toWorld(Vector(1, 0, k)) - origin;
+  const Vector j = image.grid.toWorld(Vector(0, 1, k)) - origin;
+  Eigen::Matrix2d seen;
+  seen << i.dot(view.right), j.dot(view.right), i.dot(view.up), j.dot(view.up);
+  const Eigen::Matrix2d unseen = seen.inverse();
+  const int side = static_cast<int>(2 * kTile);
+  return report::renderPoints(image, side, side, grey, [&](double x, double y) {
+    const Point2 at = unseen * Point2(x - kTile, kTile - y) / (2 * view.scale);
+    return Point(view.middle + at[0] * i + at[1] * j);
+  });
+}
+
 /// Pixels of a slice, each run of equal reason one quadrilateral.
 void drawWall(Canvas& canvas, const View& view, const Frame& frame, int k) {
   const Volume<std::uint8_t>& reasons = frame.measures->reasons;
@@ -112,7 +137,7 @@ std::vector<std::int32_t> aroundAxis(const Beat& beat, const Frame& frame, int k
 
 /// The boundary through the ends of trajectories of voxels beside it, with gaps where it is open.
 void drawBoundary(Canvas& canvas, const View& view, const WallThickness& wall,
-                  const std::vector<std::int32_t>& numbers, bool inner) {
+                  const std::vector<std::int32_t>& numbers, bool inner, const Colour& colour) {
   const double pixel = wall.annulus.grid.spacing.head<2>().maxCoeff();
   std::vector<std::pair<double, Point>> ends;
   for (const std::int32_t n : numbers) {
@@ -129,7 +154,7 @@ void drawBoundary(Canvas& canvas, const View& view, const WallThickness& wall,
             [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Point2> line;
   const auto flush = [&] {
-    if (line.size() > 1) canvas.stroke(line, inner ? kInnerLine : kOuterLine, 1.6);
+    if (line.size() > 1) canvas.stroke(line, colour, 1.6);
     line.clear();
   };
   for (std::size_t e = 0; e <= ends.size() && !ends.empty(); ++e) {
@@ -218,22 +243,23 @@ std::string secondLine(const SliceRow& row) {
          " voxels left out";
 }
 
-void drawHead(Canvas& canvas, const Beat& beat, std::size_t f) {
+void drawHead(Canvas& canvas, const Frame& frame, const char* phase, bool onImage) {
   const double middle = 0.5 * canvas.width();
   canvas.text({middle, 26},
-              "Slices from base to apex, frame " + std::to_string(beat.frames[f].number) +
-                  (f == beat.diastole  ? " (end-diastole)"
-                   : f == beat.systole ? " (end-systole)"
-                                       : ""),
-              11, kInk);
-  canvas.text({middle, 44}, "seen from the apex, trajectories drawn across the wall", 7.5, kGrey);
-  const std::array<std::pair<Colour, const char*>, 6> legend = {
-      std::pair{kInnerLine, "inner boundary"},
-      {kOuterLine, "outer boundary"},
-      {kWallColour, "counts"},
-      {colourOf(LeftOut::Opening), "left out: opening"},
-      {colourOf(LeftOut::Valve), "valve plane"},
-      {colourOf(LeftOut::Cap), "apical cap"}};
+              "Slices from base to apex, frame " + std::to_string(frame.number) + phase, 11, kInk);
+  canvas.text({middle, 44},
+              onImage ? "seen from the apex, boundaries on the image"
+                      : "seen from the apex, trajectories drawn across the wall",
+              7.5, kGrey);
+  std::vector<std::pair<Colour, const char*>> legend = {
+      {onImage ? kInnerOnImage : kInnerLine, "inner boundary"},
+      {onImage ? kOuterOnImage : kOuterLine, "outer boundary"}};
+  if (!onImage) {
+    legend.insert(legend.end(), {{kWallColour, "counts"},
+                                 {colourOf(LeftOut::Opening), "left out: opening"},
+                                 {colourOf(LeftOut::Valve), "valve plane"},
+                                 {colourOf(LeftOut::Cap), "apical cap"}});
+  }
   double width = 0;
   for (const auto& [colour, words] : legend) width += 34 + report::textWidth(words, 7.5);
   double x = middle - 0.5 * width;
@@ -244,36 +270,72 @@ void drawHead(Canvas& canvas, const Beat& beat, std::size_t f) {
   }
 }
 
-}  // namespace
+/// A slice in its tile: both boundaries, on what is measured or on the image.
+void drawSlice(Canvas& canvas, const View& view, const Beat& beat, const Frame& frame, int k,
+               const correspondence::TrajectoryTracer& tracer, const Volume<float>* image,
+               const report::ColourScale& grey) {
+  const WallThickness& wall = *frame.measures;
+  const auto numbers = aroundAxis(beat, frame, k);
+  if (image) {
+    canvas.image(view.corner, Point2(kTile, kTile), imageOf(view, *image, grey, k));
+  } else {
+    drawWall(canvas, view, frame, k);
+    drawTrajectories(canvas, view, beat, frame, tracer, numbers);
+  }
+  drawBoundary(canvas, view, wall, numbers, true, image ? kInnerOnImage : kInnerLine);
+  drawBoundary(canvas, view, wall, numbers, false, image ? kOuterOnImage : kOuterLine);
+}
 
-Drawn slicePicture(const Beat& beat, std::size_t f) {
+/// The slices of a frame where and as large as those of another one are.
+Canvas drawSlices(const Beat& beat, std::size_t f, const Volume<float>* image,
+                  const Frame& placed) {
   const Frame& frame = beat.frames[f];
-  const std::vector<SliceRow> rows = shownRows(frame);
+  const std::vector<SliceRow> rows = shownRows(placed);
   const int lines = (static_cast<int>(rows.size()) + kColumns - 1) / kColumns;
   Canvas canvas(static_cast<int>(kColumns * kTile),
                 static_cast<int>(kHead + lines * (kTile + kCaption)));
-  drawHead(canvas, beat, f);
-  const WallThickness& wall = *frame.measures;
-  const correspondence::TrajectoryTracer tracer(wall.annulus, wall.interpolant);
-  View view = viewOf(beat, frame);
+  drawHead(canvas, frame,
+           f == beat.diastole  ? " (end-diastole)"
+           : f == beat.systole ? " (end-systole)"
+                               : "",
+           image != nullptr);
+  View view = viewOf(beat, placed);
+  const correspondence::TrajectoryTracer tracer(frame.measures->annulus,
+                                                frame.measures->interpolant);
+  const auto grey = image ? greyOf(*image, frame.heart) : report::ColourScale{};
   const Grid& grid = frame.heart.grid;
   for (std::size_t q = 0; q < rows.size(); ++q) {
     const int k = rows[q].slice;
     view.corner = Point2(kTile * static_cast<double>(q % kColumns),
                          kHead + (kTile + kCaption) * static_cast<double>(q / kColumns));
     const Eigen::Vector2d centre =
-        wall.slices[static_cast<std::size_t>(k)].centre.cwiseQuotient(grid.spacing.head<2>());
+        placed.measures->slices[static_cast<std::size_t>(k)].centre.cwiseQuotient(
+            grid.spacing.head<2>());
     view.middle = grid.toWorld(Vector(centre[0], centre[1], k));
-    const auto numbers = aroundAxis(beat, frame, k);
-    drawWall(canvas, view, frame, k);
-    drawTrajectories(canvas, view, beat, frame, tracer, numbers);
-    drawBoundary(canvas, view, wall, numbers, true);
-    drawBoundary(canvas, view, wall, numbers, false);
+    drawSlice(canvas, view, beat, frame, k, tracer, image, grey);
     const Point2 below = view.corner + Point2(0.5 * kTile, kTile + 12);
+    if (&placed != &frame) continue;
     canvas.text(below, captionOf(rows[q]), 8, kInk);
     canvas.text(below + Point2(0, 14), secondLine(rows[q]), 7, kGrey);
   }
+  return canvas;
+}
+
+}  // namespace
+
+Drawn slicePicture(const Beat& beat, std::size_t f, const Volume<float>* image) {
+  const Canvas canvas = drawSlices(beat, f, image, beat.frames[f]);
   return {canvas.svg(), canvas.picture(2)};
+}
+
+std::string slicesOverTime(const Beat& beat, const std::vector<Volume<float>>& images) {
+  constexpr double kSmall = 0.6, kPerSecond = 12;
+  std::vector<report::Picture> pictures;
+  for (std::size_t f = 0; f < beat.frames.size(); ++f) {
+    if (!beat.frames[f].measures) continue;
+    pictures.push_back(drawSlices(beat, f, &images[f], beat.atDiastole()).picture(kSmall));
+  }
+  return report::encodeGif(pictures, kPerSecond);
 }
 
 }  // namespace explica::ventricle

@@ -20,6 +20,7 @@ constexpr std::uintmax_t kLargestPicture = 3u << 20;  // bytes: the page stays b
 std::string mediaTypeOf(const fs::path& file) {
   if (file.extension() == ".svg") return "image/svg+xml";
   if (file.extension() == ".png") return "image/png";
+  if (file.extension() == ".gif") return "image/gif";
   return "";
 }
 
@@ -33,6 +34,7 @@ constexpr Known kKnown[] = {
      "from its neighbours; look at its slices."},
     {"slices_ed", "Slices at end-diastole", ""},
     {"slices_es", "Slices at end-systole", ""},
+    {"slices", "Slices over time", ""},
     {"field", "Interpolant, tangent field, trajectories and grid in a slice", ""}};
 
 report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {

@@ -6,6 +6,7 @@
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Report/Picture.h"
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,6 +39,10 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
 
 /// Width of a text as drawn, pixels.
 [[nodiscard]] double textWidth(std::string_view text, double size);
+
+/// A picture as an element of an SVG, from its top left corner.
+[[nodiscard]] std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
+                                   const Eigen::Vector2d& size);
 
 /// Draws a scale's colours as a standing bar with five ticks, title and unit, in the given
 /// rectangle.

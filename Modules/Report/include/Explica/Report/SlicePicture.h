@@ -9,6 +9,7 @@
 #include "Explica/Report/Picture.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace explica::report {
@@ -47,8 +48,13 @@ struct SliceFrame {
 [[nodiscard]] SliceFrame frameAround(SliceAxis axis, double position, const Point& low,
                                      const Point& high, int height);
 
-/// A slice of a scalar volume with cut lines of surfaces on it.  Any grid, oblique ones too: each
-/// pixel is interpolated trilinearly at its place in the world; beyond the volume it is black.
+/// A scalar volume at the points of the world that `worldOf` gives for places in the picture, in
+/// pixels: interpolated trilinearly; beyond the volume it is black.
+[[nodiscard]] Picture renderPoints(const Volume<float>& image, int width, int height,
+                                   const ColourScale& scale,
+                                   const std::function<Point(double x, double y)>& worldOf);
+
+/// A slice of a scalar volume with cut lines of surfaces on it.  Any grid, oblique ones too.
 [[nodiscard]] Picture renderSlice(const Volume<float>& image, const SliceFrame& frame,
                                   const ColourScale& scale,
                                   const std::vector<Contour>& contours = {});

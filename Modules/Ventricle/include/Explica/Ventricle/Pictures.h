@@ -23,7 +23,15 @@ struct Drawn {
 
 /// The slices of a frame from base to apex, seen from the apex: both boundaries, trajectories
 /// through evenly spaced places of the wall [thesis figure 3.3], and in other colours what is left
-/// out of means.
-[[nodiscard]] Drawn slicePicture(const Beat& beat, std::size_t frame);
+/// out of means; or both boundaries on an image of that frame.
+/// @param image  on the grid of the labels; nullptr: none
+[[nodiscard]] Drawn slicePicture(const Beat& beat, std::size_t frame,
+                                 const Volume<float>* image = nullptr);
+
+/// The slices of end-diastole with both boundaries on the images, over time: an endless GIF of the
+/// frames that have a wall.
+/// @param images  one a frame of the beat
+[[nodiscard]] std::string slicesOverTime(const Beat& beat,
+                                         const std::vector<Volume<float>>& images);
 
 }  // namespace explica::ventricle
