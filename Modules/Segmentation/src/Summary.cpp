@@ -80,7 +80,7 @@ void describe(Results& t, const TissueSummary& r) {
   describeClasses(t, tissue);
   t.number("fluid_of_white", "Deep fluid over white matter", "", "Ratio of brightness.",
            of(found.deepFluid / found.classes[2].mean));
-  t.number("noise_of_contrast", "Noise over the contrast of grey and white matter", "",
+  t.number("noise_of_contrast", "Noise over the contrast of fluid and white matter", "",
            "Standard deviation over the difference of means.", of(noiseOfContrast(found)));
   t.number("rim_contrast", "Contrast at the white border", "",
            "Share of the border's voxels where white is brighter than grey.", r.rimContrast);

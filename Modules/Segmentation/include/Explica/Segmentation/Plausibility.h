@@ -76,7 +76,7 @@ struct Flag {
 /// @return NaN if grey matter touches neither
 [[nodiscard]] double greyAtMaskEdge(const Volume<Label>& tissues);
 
-/// The noise's deviation over the difference of white and grey matter's means.
+/// The noise's deviation over the difference of white matter's and fluid's means.
 [[nodiscard]] double noiseOfContrast(const TissueSegmentation& tissue);
 
 /// Share of the brain that is a fifth brighter than white matter, the brightest tissue of a T1:
