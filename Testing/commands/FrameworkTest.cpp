@@ -102,7 +102,7 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
        "--thickness.image-edge is gone: valid.nii.gz marks where"},
       {{"flatten", "a.gii", "--overlay", "b.gii"}, "did you mean --map?"},
       {{"unfold", "a.gii", "--overwrite"}, "did you mean --force?"},
-      {{"heart", "a.nii", "--images", "b.nii"}, "unknown option --images; see --help"},
+      {{"heart", "a.nii", "--movies", "b.nii"}, "unknown option --movies; see --help"},
       {{"surface", "a.nii", "--faces", "9"}, "100 to 100,000,000"},
       {{"view", folder.path().string(), "--screenshot", folder / "a.png"},
        "is a folder: --screenshot draws surfaces"},
