@@ -97,6 +97,22 @@ TEST(PlausibilityCommand, VesselsBrighterThanWhiteMatterAreFlagged) {
   EXPECT_EQ(summary["flags"][0]["name"], "bright-in-brain");
 }
 
+TEST(PlausibilityCommand, TooMuchNoiseIsFlagged) {
+  TemporaryFolder folder;
+  Volume<float> image = ballHead(70, 3, {kFluid, kGrey, kWhite});
+  std::mt19937 generator(3);
+  std::normal_distribution<float> noise(0, 0.16F * (kWhite - kFluid));
+  for (float& value : image.data) {
+    if (value != 0) value = std::max(1.0F, value + noise(generator));
+  }
+  io::writeVolume(folder / "t1.nii.gz", image);
+  const auto result = segment(folder, "t1.nii.gz");
+  EXPECT_EQ(result.exitCode, 3) << result;
+  const auto summary = readJson(folder.path() / "out/summary.json");
+  EXPECT_NEAR(summary["noise_of_contrast"].get<double>(), 0.16, 0.03);
+  EXPECT_EQ(summary["flags"][0]["name"], "noise");
+}
+
 /// A ball of white matter within grey within fluid, by radii in mm.
 Volume<float> ballLabels(double white, double tissue, double radius, double spacing) {
   Volume<float> labels = ballHead(radius, spacing, {kFluid, kGrey, kWhite});
