@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <memory>
@@ -83,14 +84,19 @@ void parallelForBlocks(std::size_t count, std::size_t grain,
   Promise promise;
   promise.given();
   const Monitor* const monitor = StopScope::current();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 1),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      promise.taken();
-                      const StopScope scope(monitor);
-                      for (std::size_t b = range.begin(); b < range.end(); ++b) runBlock(b);
-                      promise.kept();
-                    });
+  tbb::task_group_context group;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, blocks, 1),
+      [&](const tbb::blocked_range<std::size_t>& range) {
+        promise.taken();
+        const StopScope scope(monitor);
+        for (std::size_t b = range.begin(); b < range.end(); ++b) runBlock(b);
+        promise.kept();
+      },
+      group);
   promise.met();
+  // Where a loop around this one has ended by an exception, TBB leaves blocks out without a word.
+  if (group.is_group_execution_cancelled()) throw Interrupted{};
 }
 
 }  // namespace explica

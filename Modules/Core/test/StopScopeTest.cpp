@@ -6,6 +6,8 @@
 #include "Explica/Core/Parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -77,6 +79,23 @@ TEST(StopScope, ReachesLoopsWithinLoopsOnEveryThread) {
   const StopScope scope(&stop.monitor());
   parallelFor(8, 1, [](std::size_t) { parallelFor(40, 10, [](std::size_t) {}); });
   EXPECT_EQ(stop.asked(), 8 + 8 * 4);
+}
+
+/// As when another block of the loop around it has thrown: TBB then leaves out blocks, and the loop
+/// must not return as if they had been done.
+TEST(StopScope, ALoopWithinALoopThatHasEndedDoesNotReturn) {
+  tbb::task_group_context group;
+  std::atomic<int> ended = 0;
+  const auto body = [&](std::size_t /*n*/) {
+    group.cancel_group_execution();
+    try {
+      parallelFor(1000, 1, [](std::size_t) {});
+    } catch (const Interrupted&) {
+      ++ended;
+    }
+  };
+  tbb::parallel_for(std::size_t{0}, std::size_t{2}, body, group);
+  EXPECT_GE(ended.load(), 1);
 }
 
 TEST(StopScope, IsNoFaultOfTheData) {
