@@ -186,13 +186,10 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
   }
 }
 
-/// Whether the map can be used, and how well it keeps areas and lengths.
-void sayHowGood(Context& context, const flattening::FlatMap& map,
-                const unfolding::Distortion& distortion) {
+void sayWhetherUsable(Context& context, const flattening::FlatMap& map) {
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
-  context.info(printed("flat map: %s; mean area error %.1f %%, mean change of lengths %.1f %%%s",
+  context.info(printed("flat map: %s%s",
                        folded ? "not usable, it folds or overlaps" : "usable, one-to-one",
-                       100 * distortion.areaErrorMean, 100 * distortion.edgeStrainMean,
                        map.termination == Termination::MaxIterations
                            ? "; ended at its limit of iterations (--solver.max-iterations)"
                            : ""));
@@ -278,7 +275,7 @@ Termination run(Context& context, const FlattenSettings& s) {
     writeGrid(context, s, surfaces, disc, flat);
   });
   context.results(summary);
-  sayHowGood(context, map, summary.distortion);
+  sayWhetherUsable(context, map);
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);
   context.result("seconds_flatten", flattened - read - made.secondsCut);

@@ -31,8 +31,9 @@ namespace explica::app {
 namespace {
 
 visibility::Viewpoints viewOf(const UnfoldSettings& s, const TriangleMesh& mesh,
-                              const Point& about) {
-  return viewFrom(s.view, s.viewSurface, s.reading, mesh, about);
+                              const unfolding::Region& region, const Point& about) {
+  return viewFrom(s.view, s.viewSurface, s.reading, mesh, about,
+                  unfolding::meanNormal(mesh, region));
 }
 
 /// Vertices at which the map is above the value.
@@ -140,11 +141,11 @@ Aim chooseAim(Context& context, const TriangleMesh& mesh, const UnfoldSettings& 
     unfolding::RegionOptions centre = s.region;
     centre.cone.reset();
     const unfolding::Region ball = unfolding::selectRegion(mesh, centre);
-    aim.view = viewOf(s, mesh, mesh.positions.row(ball.centre).transpose());
+    aim.view = viewOf(s, mesh, ball, mesh.positions.row(ball.centre).transpose());
     aim.region = regionOf(mesh, s, &aim.view);
   } else {
     aim.region = regionOf(mesh, s, nullptr);
-    aim.view = viewOf(s, mesh, unfolding::centroidOf(mesh, aim.region));
+    aim.view = viewOf(s, mesh, aim.region, unfolding::centroidOf(mesh, aim.region));
   }
   unfolding::requireViewFromOutside(mesh, aim.view);
   if (aim.region.pieces > 1) {

@@ -10,31 +10,31 @@ namespace explica::app {
 
 visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<std::string>& surface,
                                 const io::SurfaceReadOptions& reading, const TriangleMesh& mesh,
-                                const Point& about) {
+                                const Point& about, const Vector& normal) {
   const int given =
       !view.viewpoint.empty() + !view.direction.empty() + !view.line.empty() + surface.has_value();
-  if (given != 1) {
+  if (given > 1) {
     throw InvalidInput(
-        "viewpoint: give exactly one of --viewpoint, --direction, --view-line and --view-surface; "
+        "viewpoint: give one of --viewpoint, --direction, --view-line and --view-surface; "
         "--viewpoint and --direction may be repeated");
   }
   if (!view.viewpoint.empty()) return visibility::viewpoints(view.viewpoint);
-  if (!view.direction.empty()) {
-    const double distance = view.distance ? *view.distance : unfolding::usualDistance(mesh);
-    std::vector<Point> points;
-    for (const Vector& direction : view.direction) {
-      const double length = direction.norm();
-      if (!(length > 0)) throw InvalidInput("direction: has no length");
-      points.emplace_back(about + distance / length * direction);
-    }
-    return visibility::viewpoints(points);
-  }
   if (!view.line.empty()) {
     if (view.line.size() != 6) throw InvalidInput("view-line: needs six numbers X,Y,Z,X,Y,Z");
     return visibility::viewLine(Point(view.line[0], view.line[1], view.line[2]),
                                 Point(view.line[3], view.line[4], view.line[5]));
   }
-  return visibility::viewSurface(io::readSurface(*surface, reading).mesh);
+  if (surface) return visibility::viewSurface(io::readSurface(*surface, reading).mesh);
+  const double distance = view.distance ? *view.distance : unfolding::usualDistance(mesh);
+  std::vector<Vector> directions(view.direction.begin(), view.direction.end());
+  if (directions.empty()) directions.push_back(normal);
+  std::vector<Point> points;
+  for (const Vector& direction : directions) {
+    const double length = direction.norm();
+    if (!(length > 0)) throw InvalidInput("direction: has no length");
+    points.emplace_back(about + distance / length * direction);
+  }
+  return visibility::viewpoints(points);
 }
 
 }  // namespace explica::app

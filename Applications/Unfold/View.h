@@ -23,10 +23,12 @@ struct ViewSettings {
 template <class Visitor>
 void describe(ViewSettings& view, Visitor&& visit) {
   visit(Field{"viewpoint", "mm", "point to look from; of several the mean counts"}, view.viewpoint);
-  visit(Field{"direction", "", "look from the region's centroid plus --distance along this"},
+  visit(Field{"direction", "",
+              "look from the region's centroid plus --distance along this (default the region's "
+              "mean normal)"},
         view.direction);
   visit(Field{"distance", "mm",
-              "how far off a viewpoint given by --direction is (default 1000, or three times the "
+              "how far off a viewpoint given by its direction is (default 1000, or three times the "
               "surface's extent if that is more)",
               kAboveZero},
         view.distance);
@@ -34,13 +36,15 @@ void describe(ViewSettings& view, Visitor&& visit) {
         view.line);
 }
 
-/// The viewpoints that the options name.
-/// @param mesh   the surface that is looked at
-/// @param about  what --direction counts from
-/// @throws InvalidInput  none or several ways of naming them
+/// The viewpoints that the options name, or one that faces the region.
+/// @param mesh    the surface that is looked at
+/// @param about   what a direction counts from, RAS mm
+/// @param normal  the direction where none is given, of any length
+/// @throws InvalidInput  several ways of naming them; a direction without length
 [[nodiscard]] visibility::Viewpoints viewFrom(const ViewSettings& view,
                                               const std::optional<std::string>& surface,
                                               const io::SurfaceReadOptions& reading,
-                                              const TriangleMesh& mesh, const Point& about);
+                                              const TriangleMesh& mesh, const Point& about,
+                                              const Vector& normal);
 
 }  // namespace explica::app

@@ -126,6 +126,7 @@ void Context::results(const Results& listed) {
     const Judgement judgement = result.judgement().value_or(Judgement::Good);
     if (judgement != Judgement::Good) state_->reasons.emplace_back(judgement, result.sentence());
   }
+  for (std::string& line : listed.head()) state_->head.push_back(std::move(line));
 }
 
 void Context::result(const std::string& key, const Result::Value& value) {

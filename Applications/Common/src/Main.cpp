@@ -115,6 +115,7 @@ void report(const Run& run, const Outcome& outcome, Console& console) {
                     ") before there was a result; nothing was written");
   }
   if (outcome.record.empty()) return;
+  for (const std::string& line : outcome.head) console.info(line);
   const std::string where = outcome.record.parent_path().string();
   if (!outcome.plausible && reachedGoal(outcome.termination)) {
     console.warning("finished; check the results in " + where + " before using them");

@@ -277,6 +277,7 @@ Outcome execute(Run& run, Console& console) {
   record.peakMemoryBytes = peakMemory();
   publish(state);
   outcome.record = fs::path(*run.common.out) / provenance::kRecordName;
+  outcome.head = std::move(state.head);
   return outcome;
 }
 

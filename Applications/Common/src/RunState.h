@@ -36,6 +36,7 @@ struct Context::State {
   std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
   std::vector<std::pair<Judgement, std::string>> reasons;  ///< of results that are not good
+  std::vector<std::string> head = {};                      ///< results to end with, in words
   std::optional<Meeting> meeting = {};                     ///< the files read so far
   Stopwatch seconds = {};
 

@@ -115,6 +115,19 @@ std::string Result::sentence() const {
   return title + ": " + words + "; " + expectation(limit);
 }
 
+std::vector<std::string> Results::head() const {
+  std::vector<std::string> lines;
+  for (const Result& result : all_) {
+    const auto measure = measureOf(result.value);
+    if (!result.isInHead || !measure) continue;
+    const Result* start = find(result.start);
+    const auto before = start ? measureOf(start->value) : std::nullopt;
+    lines.push_back(result.title + ": " + (before ? inWords(result, *before) + " -> " : "") +
+                    inWords(result, *measure));
+  }
+  return lines;
+}
+
 Result& Results::add(Result result) {
   if (find(result.key)) throw std::logic_error("result '" + result.key + "' is described twice");
   return all_.emplace_back(std::move(result));

@@ -3,6 +3,8 @@
 
 #include "Explica/Core/Results.h"
 
+#include "Explica/Core/Types.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,6 +81,15 @@ TEST(Results, AKeyIsDescribedOnceAndMayBeAPattern) {
   EXPECT_EQ(t.find("unknown"), nullptr);
   EXPECT_THROW(t.count("known_t1", "Known", "", 1), std::logic_error);
   EXPECT_THROW(t["absent"], std::logic_error);
+}
+
+TEST(Results, TheHeadIsWhatIsKnownOfIt) {
+  Results t;
+  t.number("length", "Length", "mm", "", 2.5);
+  t.number("width", "Width", "mm", "", kNaN).inHead();
+  t.change("seen", "Seen", "share", "", {0.5, 0.987}).inHead();
+  t.count("cuts", "Cuts", "", 3).inHead();
+  EXPECT_EQ(t.head(), (std::vector<std::string>{"Seen: 50 % -> 98.7 %", "Cuts: 3"}));
 }
 
 TEST(Results, PartsMakeATable) {

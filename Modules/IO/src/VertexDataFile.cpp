@@ -13,6 +13,8 @@
 
 #include "Explica/IO/VolumeSeries.h"
 
+#include <array>
+
 namespace explica::io {
 namespace {
 
@@ -44,6 +46,26 @@ void checkCount(const std::filesystem::path& path, Eigen::Index found,
   }
 }
 
+/// Of the maps that FreeSurfer and sMRIPrep write, by the last word of the file's name; empty for
+/// others.
+std::string unitByName(const std::filesystem::path& path) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kUnits = {
+      {{"thickness", "mm"},
+       {"sulc", "mm"},
+       {"curv", "mm^-1"},
+       {"area", "mm^2"},
+       {"volume", "mm^3"}}};
+  std::string name = path.filename().string();
+  for (const std::string_view ending : {".gz", ".gii", ".shape", ".mgh", ".mgz"}) {
+    if (name.ends_with(ending)) name.resize(name.size() - ending.size());
+  }
+  const std::string word = name.substr(name.find_last_of("._") + 1);
+  for (const auto& [known, unit] : kUnits) {
+    if (word == known) return std::string(unit);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
@@ -73,7 +95,10 @@ std::vector<VertexMap> readVertexMaps(const std::filesystem::path& path,
     }
   }
   if (maps.empty()) refuse(path, "holds no per-vertex values");
-  for (const VertexMap& map : maps) checkCount(path, map.values.size(), vertexCount);
+  for (VertexMap& map : maps) {
+    checkCount(path, map.values.size(), vertexCount);
+    if (map.unit.empty()) map.unit = unitByName(path);
+  }
   return maps;
 }
 

@@ -54,6 +54,9 @@ TEST(VertexMaps, CurvNewAndOldAndMghOverlaysAreRead) {
   const std::vector<io::VertexMap> curv = io::readVertexMaps(folder / "lh.thickness");
   EXPECT_EQ(curv.at(0).name, "thickness");
   EXPECT_EQ(curv.at(0).values, rounded(someValues()));
+  EXPECT_EQ(curv.at(0).unit, "mm");
+  io::writeFreeSurferCurv(folder / "lh.thickness_t", someValues(), 10);
+  EXPECT_EQ(io::readVertexMaps(folder / "lh.thickness_t").at(0).unit, "");
 
   putContent(folder / "lh.old", std::string("\0\0\2\0\0\1\0\x7b\xff\x85", 10));
   EXPECT_EQ(io::readVertexMaps(folder / "lh.old").at(0).values, Eigen::Vector2d(1.23, -1.23));
@@ -63,7 +66,9 @@ TEST(VertexMaps, CurvNewAndOldAndMghOverlaysAreRead) {
   Volume<float> overlay(grid);
   for (int v = 0; v < 7; ++v) overlay[v] = static_cast<float>(someValues()[v]);
   io::writeVolume(folder / "lh.area.mgz", overlay);
-  EXPECT_EQ(io::readVertexMaps(folder / "lh.area.mgz").at(0).values, rounded(someValues()));
+  const io::VertexMap area = io::readVertexMaps(folder / "lh.area.mgz").at(0);
+  EXPECT_EQ(area.values, rounded(someValues()));
+  EXPECT_EQ(area.unit, "mm^2");
 }
 
 TEST(VertexMaps, TheWrongNumberOfValuesIsRefusedWithBothNumbers) {

@@ -233,4 +233,11 @@ Point centroidOf(const TriangleMesh& mesh, const Region& region) {
   return sum / static_cast<double>(region.vertices.size());
 }
 
+Vector meanNormal(const TriangleMesh& mesh, const Region& region) {
+  Vector sum = Vector::Zero();
+  const Positions normals = geometry::faceNormalVectors(mesh);
+  for (const std::int32_t f : region.faces) sum += normals.row(f).transpose();
+  return sum;
+}
+
 }  // namespace explica::unfolding

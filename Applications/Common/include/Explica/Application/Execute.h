@@ -61,9 +61,10 @@ void describe(CommonOptions& o, Visitor&& visit) {
 struct Outcome {
   int exitCode = kDone;
   Termination termination = Termination::NotRun;
-  bool abandoned = false;        ///< asked to end while there was nothing worth writing
-  bool plausible = true;         ///< false if a number lies outside of its limits
-  std::filesystem::path record;  ///< its provenance.json; empty if it writes none
+  bool abandoned = false;         ///< asked to end while there was nothing worth writing
+  bool plausible = true;          ///< false if a number lies outside of its limits
+  std::vector<std::string> head;  ///< its first results, in words
+  std::filesystem::path record;   ///< its provenance.json; empty if it writes none
 };
 
 /// The number of threads and what decided it: --threads, EXPLICA_NTHREADS, SLURM_CPUS_PER_TASK,

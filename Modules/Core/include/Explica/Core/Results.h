@@ -50,7 +50,7 @@ struct Result {
   Value value;
   std::vector<Limit> limits = {};
   std::string start = {};   ///< key of the same quantity at the start, shown in front of it
-  bool isInHead = false;    ///< shown at the head of reports, and first in study tables
+  bool isInHead = false;    ///< shown at a run's end and the head of reports, first in study tables
   bool isCompared = false;  ///< should be alike in all people: outliers of a study are marked
 
   Result& within(double least, double most, Judgement outside, std::string source);
@@ -126,6 +126,8 @@ class Results {
   void include(const Results& others);
   [[nodiscard]] auto begin() const { return all_.begin(); }
   [[nodiscard]] auto end() const { return all_.end(); }
+  /// "Average visibility: 0.45 -> 0.98" of each known result of the head.
+  [[nodiscard]] std::vector<std::string> head() const;
   /// The result of that key, or the one whose pattern it matches, or nullptr.
   [[nodiscard]] const Result* find(std::string_view key) const;
 

@@ -72,6 +72,9 @@ struct Region {
 /// counted from.
 [[nodiscard]] Point centroidOf(const TriangleMesh& mesh, const Region& region);
 
+/// Along the region's mean outward normal, of any length: zero where the faces cancel.
+[[nodiscard]] Vector meanNormal(const TriangleMesh& mesh, const Region& region);
+
 /// How far off a viewpoint is of which only the direction is given: 1000 mm, or three times the
 /// extent of a surface that is larger, such as one in micrometres.
 [[nodiscard]] double usualDistance(const TriangleMesh& mesh);
