@@ -274,8 +274,8 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
                       surface.faces == surfaces[0].faces;
     if (!same) {
       throw InvalidInput(
-          "surfaces: their faces differ; several surfaces are repaired together if "
-          "their vertices correspond");
+          "surfaces: their faces differ; several surfaces are repaired together if their vertices "
+          "correspond");
     }
   }
   const auto topology = geometry::buildTopology(surfaces[0].faces, surfaces[0].vertexCount());

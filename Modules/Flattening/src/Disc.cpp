@@ -122,9 +122,9 @@ void keepLargest(Disc& disc) {
   const auto largest = std::max_element(areas.begin(), areas.end()) - areas.begin();
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
   if (!(areas[largest] > all / 2)) {
-    throw InvalidInput("surface: the part to be laid flat has " + std::to_string(pieces) +
-                       " pieces, none with more than half of the area; give one of them, by "
-                       "--label or --cuts");
+    throw InvalidInput(
+        "surface: the part to be laid flat has " + std::to_string(pieces) +
+        " pieces, none with more than half of the area; give one of them, by --label or --cuts");
   }
   std::vector<std::int32_t> kept;
   for (std::size_t f = 0; f < parts.size(); ++f) {

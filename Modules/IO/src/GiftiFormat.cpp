@@ -287,8 +287,8 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
   if (array.placed) {
     text +=
         "<CoordinateSystemTransformMatrix>\n<DataSpace>NIFTI_XFORM_SCANNER_ANAT</DataSpace>\n"
-        "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>"
-        "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
+        "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>1 0 0 0\n0 1 0 "
+        "0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
   }
   text += "<Data>";
   appendBase64(text, packZlib(array.bytes));
@@ -467,8 +467,7 @@ LabelMap readGiftiLabels(const std::filesystem::path& path, ByteView bytes) {
     const double value = array->values[v];
     if (!(std::abs(value) <= std::numeric_limits<Label>::max() && std::trunc(value) == value)) {
       refuse(path, "vertex " + std::to_string(v) +
-                       " has a value that is no whole number; labels "
-                       "are needed");
+                       " has a value that is no whole number; labels are needed");
     }
     labels.keys[v] = static_cast<Label>(value);
   }

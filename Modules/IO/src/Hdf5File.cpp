@@ -40,9 +40,10 @@ struct ElementType {
 };
 
 [[noreturn]] void failAsUnknown(const std::filesystem::path& path, const std::string& what) {
-  failToRead(path, "is HDF5 with " + what +
-                       ", which is not read here; write it anew with the program that made "
-                       "it, or h5repack");
+  failToRead(
+      path,
+      "is HDF5 with " + what +
+          ", which is not read here; write it anew with the program that made it, or h5repack");
 }
 
 std::vector<std::int64_t> dataspaceOf(const std::filesystem::path& path, ByteView message) {

@@ -224,8 +224,8 @@ void judge(const InflateOptions& options, const Monitor& monitor, InflateResult&
              last.visibility < options.targetSeen - kHeldBelow) {
     result.flag = unfolding::Flag::Held;
     monitor.warn(
-        printed("the surface is held at a visibility of %.3f: areas and lengths kept, it does "
-                "not open further",
+        printed("the surface is held at a visibility of %.3f: areas and lengths kept, it does not "
+                "open further",
                 last.visibility));
   } else {
     return;

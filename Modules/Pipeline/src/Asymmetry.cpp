@@ -57,8 +57,8 @@ std::string asymmetryTable(const std::filesystem::path& left, const std::filesys
   const auto ofLeft = readRegions(left);
   const auto ofRight = readRegions(right);
   std::string table =
-      "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\t"
-      "area_left_mm2\tarea_right_mm2\tarea_asymmetry\n";
+      "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\tarea_left_mm2\tarea_right_"
+      "mm2\tarea_asymmetry\n";
   for (const auto& [name, region] : ofLeft) {
     const auto other = ofRight.find(name);
     if (other == ofRight.end()) continue;

@@ -220,8 +220,8 @@ std::string headHtml(const ReportContent& content) {
 std::string findingsHtml(const ReportFindings& findings) {
   if (findings.rows.empty()) return {};
   std::string html =
-      "<section id='numbers'><h2>What was found</h2><div class='wide' tabindex='0' "
-      "role='region' aria-label='What was found'><table class='findings'>";
+      "<section id='numbers'><h2>What was found</h2><div class='wide' tabindex='0' role='region' "
+      "aria-label='What was found'><table class='findings'>";
   const bool isExpected = std::any_of(findings.rows.begin(), findings.rows.end(),
                                       [](const auto& row) { return !row.expected.empty(); });
   if (findings.columns.size() > 1 || isExpected) {
@@ -334,8 +334,8 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
   if (mosaic.after) {
     html += "<span class='states'><label><input type='checkbox' class='to-other'> " +
             escapeHtml(mosaic.states[1]) + " instead of " + escapeHtml(mosaic.states[0]) +
-            "</label> <button type='button' class='flicker' aria-pressed='false'>Flicker</button>"
-            "</span> &nbsp; ";
+            "</label> <button type='button' class='flicker' "
+            "aria-pressed='false'>Flicker</button></span> &nbsp; ";
   }
   html += mosaic.slices.convention == SideConvention::Neurological
               ? "Neurological convention: the person's left is on the left."
@@ -485,9 +485,8 @@ std::string contentsHtml(const std::string& page) {
 
 std::string reportPage(const ReportContent& content) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-      "<link rel=\"icon\" href=\"data:,\"><title>";
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>";
   html +=
       escapeHtml(content.title) + "</title>\n<style>\n" + kPageStyle + "</style></head><body>\n";
   html += "<header><h1>" + escapeHtml(content.title) + "</h1></header>";

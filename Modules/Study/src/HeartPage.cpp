@@ -32,11 +32,11 @@ std::string rounded(const std::string& text) {
 
 // In addition to the style that all pages share.
 constexpr char kStyle[] =
-    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
-    ".scroll{overflow-x:auto}table{border-collapse:collapse}"
-    "td,th{border:1px solid #d5d9dd;padding:4px 10px;text-align:left;vertical-align:top}"
-    "td.n{text-align:right}th{background:#f1f3f5}tr.bad{background:#fbf0ee}"
-    "td.wide{padding:8px 10px "
+    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 "
+    "1em}.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid "
+    "#d5d9dd;padding:4px "
+    "10px;text-align:left;vertical-align:top}td.n{text-align:right}th{background:#f1f3f5}tr.bad{"
+    "background:#fbf0ee}td.wide{padding:8px 10px "
     "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
 
 /// A line of numbers, and below it the pictures or what went wrong.

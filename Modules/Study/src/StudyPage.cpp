@@ -154,9 +154,8 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
                                   [](const StudyRow& row) { return row.state == "done"; });
   const auto marked =
       std::count_if(flags.begin(), flags.end(), [](const auto& row) { return !row.empty(); });
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
-         "name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" "
-         "href=\"data:,\"><title>" +
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width\"><link rel=\"icon\" href=\"data:,\"><title>" +
          escapeHtml(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
          escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +

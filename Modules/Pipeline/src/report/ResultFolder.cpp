@@ -59,10 +59,9 @@ ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
   if (steps_.empty() && notes_.empty()) {
     const fs::path record = folder / provenance::kRecordName;
     if (fs::exists(record)) static_cast<void>(provenance::readRecord(record));  // why it cannot be
-    throw InvalidInput(
-        folder.string() +
-        ": no command has written it (it holds no provenance.json); give the --out folder of "
-        "a command or run");
+    throw InvalidInput(folder.string() +
+                       ": no command has written it (it holds no provenance.json); give the --out "
+                       "folder of a command or run");
   }
 }
 

@@ -300,8 +300,8 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
       {kOutlinePlace,
        "First of " + std::to_string(places.size()) + " places to judge",
        "Right: the lines keep to the borders within the ring, too. Wrong: a bridge between two "
-       "gyri, a hole, a cut through white matter. Then: step through all places in the slices "
-       "and rate them.",
+       "gyri, a hole, a cut through white matter. Then: step through all places in the slices and "
+       "rate them.",
        {std::move(doubted.rows[0][0]), std::move(doubted.rows[1][0])},
        std::move(doubted.outlines)});
 }
