@@ -95,15 +95,15 @@ std::vector<io::LabelMap> regionsOnPatch(const FlattenSettings& s, const flatten
   for (io::LabelMap& one : regions) {
     one.keys = atPatch(one.keys, disc);
     std::erase_if(one.table, [&](const io::LabelEntry& entry) {
-      return std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end();
+      return std::ranges::find(one.keys, entry.key) == one.keys.end();
     });
   }
   return regions;
 }
 
 void writeRegions(Context& context, io::LabelMap regions, const std::string& structure) {
-  const bool zeroIsRegion = std::any_of(regions.table.begin(), regions.table.end(),
-                                        [](const io::LabelEntry& e) { return e.key == 0; });
+  const bool zeroIsRegion =
+      std::ranges::any_of(regions.table, [](const io::LabelEntry& e) { return e.key == 0; });
   const Label none = zeroIsRegion ? -1 : 0;
   for (Label& key : regions.keys) key = key == io::kNoRegion ? none : key;
   regions.table.insert(regions.table.begin(), {none, "???", {0, 0, 0, 0}});
@@ -149,7 +149,7 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
   io::writeGiftiSurface(context.output("patch_flat.surf.gii"), {positions, disc.mesh.faces},
                         metadata);
   Eigen::VectorXd numbers(disc.mesh.vertexCount());
-  std::copy(disc.vertexOrigin.begin(), disc.vertexOrigin.end(), numbers.begin());
+  std::ranges::copy(disc.vertexOrigin, numbers.begin());
   io::writeGiftiShape(context.output("vertex_of.shape.gii"), {{"vertex", "", numbers}},
                       metadata.structure);
   const std::string side = metadata.structure == "CortexRight" ? "rh" : "lh";

@@ -115,7 +115,7 @@ statistics::Formula formulaOf(const GlmSettings& s) {
   if (s.site == SiteModel::Fixed) {
     formula.categorical.insert(s.siteColumn);
     const statistics::Term term = {s.siteColumn};
-    if (std::find(formula.terms.begin(), formula.terms.end(), term) == formula.terms.end()) {
+    if (std::ranges::find(formula.terms, term) == formula.terms.end()) {
       formula.terms.push_back(term);
     }
   } else if (s.site == SiteModel::Random) {
@@ -204,7 +204,7 @@ void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, Glm
   if (!o.surface) return;
   const auto stored = [&](std::size_t person, std::span<double> values) {
     const Eigen::VectorXd row = fitted.row(static_cast<Eigen::Index>(person));
-    std::copy(row.begin(), row.end(), values.begin());
+    std::ranges::copy(row, values.begin());
   };
   const statistics::PersonReader reader =
       fitted.size() > 0 ? statistics::PersonReader(stored) : o.reader;

@@ -71,8 +71,7 @@ void readMaps(const std::vector<fs::path>& files, const std::vector<Hemisphere>&
       throw InvalidInput("'" + files[h].string() + "': holds " + std::to_string(maps.size()) +
                          " maps; one a person is needed");
     }
-    std::copy(maps.front().values.begin(), maps.front().values.end(),
-              values.begin() + hemispheres[h].first);
+    std::ranges::copy(maps.front().values, values.begin() + hemispheres[h].first);
   }
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (!mask[v]) values[v] = kNaN;
@@ -180,13 +179,13 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
     };
     bool wanted = false;
     if (!s.columns.empty()) {
-      wanted = std::any_of(s.columns.begin(), s.columns.end(), is);
+      wanted = std::ranges::any_of(s.columns, is);
     } else if (table.find(formula.response)) {
       wanted = name == formula.response;
     } else {
       wanted = c != personColumn(table, s) && statistics::isNumeric(table, c) &&
-               std::none_of(formula.terms.begin(), formula.terms.end(), [&](const auto& term) {
-                 return std::find(term.begin(), term.end(), name) != term.end();
+               std::ranges::none_of(formula.terms, [&](const auto& term) {
+                 return std::ranges::find(term, name) != term.end();
                });
     }
     if (wanted) columns.push_back(c);
@@ -221,7 +220,7 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   o.reader = [values = statistics::numbersIn(table, rows, columns)](std::size_t person,
                                                                     std::span<double> out) {
     const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
-    std::copy(row.begin(), row.end(), out.begin());
+    std::ranges::copy(row, out.begin());
   };
 }
 

@@ -38,7 +38,7 @@ Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contra
     if (factor->levels.empty()) {
       axis.x.push_back(statistics::numberIn(cell).value_or(std::nan("")));
     } else {
-      const auto level = std::find(factor->levels.begin(), factor->levels.end(), cell);
+      const auto level = std::ranges::find(factor->levels, cell);
       axis.x.push_back(static_cast<double>(level - factor->levels.begin()));
     }
   }
@@ -85,8 +85,7 @@ std::string pointsSvg(const Observations& o, const Axis& axis, const Eigen::Vect
 std::string scatterSvg(const Observations& o, const Axis& axis, const Eigen::VectorXd& y,
                        const std::string& title) {
   constexpr double kPlotWidth = 420, kPlotHeight = 260, kLeft = 56, kBottom = 42, kTop = 26;
-  double x0 = *std::min_element(axis.x.begin(), axis.x.end()),
-         x1 = *std::max_element(axis.x.begin(), axis.x.end());
+  double x0 = *std::ranges::min_element(axis.x), x1 = *std::ranges::max_element(axis.x);
   double y0 = std::nan(""), y1 = std::nan("");
   for (const double v : y) {
     y0 = std::fmin(y0, v);

@@ -135,7 +135,7 @@ void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissu
     const std::vector<float> values = sampler.sample(block);
     for (std::size_t f = 0; f * count < values.size(); ++f, ++frame) {
       const std::span<const float> one = std::span(values).subspan(f * count, count);
-      known += std::count_if(one.begin(), one.end(), [](float v) { return !std::isnan(v); });
+      known += std::ranges::count_if(one, [](float v) { return !std::isnan(v); });
       text += rowsOf(
           sampling::layerTable(tissue.voxels, tissue.layers, one, tissue.regionOf, tissue.regions),
           tissue.layers.layers, many ? std::to_string(frame) + "\t" : "");

@@ -138,7 +138,7 @@ std::string zshCompletionOf(const Json& commands) {
     if (space != std::string::npos) {
       kindsOf[verb] += " " + quotedShell(name.substr(space + 1) + ":" + synopsis);
     }
-    if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end()) continue;
+    if (std::ranges::find(verbs, verb) != verbs.end()) continue;
     verbs.push_back(verb);
     described += "  " + quotedShell(verb + ":" + synopsis) + "\n";
   }

@@ -51,7 +51,7 @@ std::optional<Pair> pairBy(const Naming& naming, const fs::path& folder) {
   }
   if (found.empty()) return {};
   // The subject's own surface has the shortest name: those of a template name their space, too.
-  const auto first = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+  const auto first = std::ranges::min_element(found, [](const auto& a, const auto& b) {
     const auto& x = a.native();
     const auto& y = b.native();
     return x.size() != y.size() ? x.size() < y.size() : x < y;

@@ -58,7 +58,7 @@ std::vector<std::string> categoriesOf(const Json& command) {
   std::vector<std::string> categories;
   for (const Json& p : command["parameters"]) {
     const std::string category = p["positional"] ? "Arguments" : word(p["category"]);
-    if (std::find(categories.begin(), categories.end(), category) == categories.end()) {
+    if (std::ranges::find(categories, category) == categories.end()) {
       categories.push_back(category);
     }
   }

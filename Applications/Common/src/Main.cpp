@@ -34,7 +34,7 @@ std::vector<const Command*> kindsOf(const std::string& verb) {
 }
 
 bool has(const std::vector<std::string>& words, const std::string& wanted) {
-  const auto end = std::find(words.begin(), words.end(), "--");
+  const auto end = std::ranges::find(words, "--");
   return std::find(words.begin(), end, wanted) != end;
 }
 

@@ -20,8 +20,8 @@ std::string roff(std::string text) {
 std::string manPageOf(const Json& command, const std::string& version) {
   const std::string name = "explica-" + replaced(word(command["command"]), " ", "-");
   std::string title = name;
-  std::transform(title.begin(), title.end(), title.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(title, title.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   std::string text = ".TH " + roff(title) + " 1 \"\" \"Explica " + roff(version) +
                      "\" \"User Commands\"\n.ad l\n.SH NAME\n" + roff(name) + " \\- " +
                      roff(word(command["synopsis"])) + "\n.SH SYNOPSIS\n.B " +
@@ -31,8 +31,8 @@ std::string manPageOf(const Json& command, const std::string& version) {
   }
   for (const std::string& category : categoriesOf(command)) {
     std::string heading = category;
-    std::transform(heading.begin(), heading.end(), heading.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    std::ranges::transform(heading, heading.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     text += ".SH \"" + roff(heading) + "\"\n";
     for (const Json& p : command["parameters"]) {
       const std::string own = p["positional"] ? "Arguments" : word(p["category"]);

@@ -64,7 +64,7 @@ bool looksLikeNumber(std::string word) {
 void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
                                 const std::vector<std::string>& words) {
   for (std::size_t w = 0; w < words.size(); ++w) {
-    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter* p) {
+    const auto found = std::ranges::find_if(parameters, [&](const Parameter* p) {
       return !p->positional && words[w] == "--" + p->option.name;
     });
     if (found == parameters.end() || (*found)->severalWords) continue;
@@ -88,9 +88,9 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
 
 /// Whether --report may be asked for: not where pages are among the results already.
 bool mayBeReported(const Declaration& declaration) {
-  const bool ownPage =
-      std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
-                  [](const OutputSlot& output) { return output.pattern == "report.html"; });
+  const bool ownPage = std::ranges::any_of(declaration.outputs, [](const OutputSlot& output) {
+    return output.pattern == "report.html";
+  });
   return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn &&
          !ownPage;
 }
@@ -125,8 +125,8 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
   for (const auto& entry : flat.items()) {
     const std::string& key = entry.key();
     const provenance::Json& value = entry.value();
-    const auto found = std::find_if(parameters.begin(), parameters.end(),
-                                    [&](const Parameter* p) { return p->option.name == key; });
+    const auto found =
+        std::ranges::find_if(parameters, [&](const Parameter* p) { return p->option.name == key; });
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
@@ -181,7 +181,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
 
   try {
     auto reversed = bindNegativeNumbers(words);
-    std::reverse(reversed.begin(), reversed.end());
+    std::ranges::reverse(reversed);
     parser.parse(reversed);
   } catch (const CLI::ExtrasError&) {
     std::vector<std::string> known;

@@ -207,8 +207,7 @@ void recordOutputs(Context::State& state) {
   parallelFor(files.size(), 1,
               [&](std::size_t f) { digests[f] = provenance::digestOf(places[f]); });
   for (std::size_t f = 0; f < files.size(); ++f) {
-    const bool varies =
-        std::find(state.varying.begin(), state.varying.end(), files[f]) != state.varying.end();
+    const bool varies = std::ranges::find(state.varying, files[f]) != state.varying.end();
     state.record.outputs.push_back({files[f], digests[f], varies});
   }
   for (const auto& [name, path] : state.nestedRecords) {

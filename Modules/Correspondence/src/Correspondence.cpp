@@ -117,7 +117,7 @@ Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
   const auto rankAtSlice = [&](int k) {
     const auto place = static_cast<std::int64_t>(k) * size[0] * size[1];
     const auto& places = tracer.placeOf;
-    return std::lower_bound(places.begin(), places.end(), place) - places.begin();
+    return std::ranges::lower_bound(places, place) - places.begin();
   };
   Blocks blocks;
   blocks.rank.resize(tracer.placeOf.size());
@@ -139,13 +139,12 @@ Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
   for (const auto& ranges : bySlab) {
     blocks.ranges.insert(blocks.ranges.end(), ranges.begin(), ranges.end());
   }
-  std::stable_sort(blocks.ranges.begin(), blocks.ranges.end(),
-                   [&](const Blocks::Range& one, const Blocks::Range& two) {
-                     const auto middleStep = [&](const Blocks::Range& range) {
-                       return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
-                     };
-                     return middleStep(one) < middleStep(two);
-                   });
+  std::ranges::stable_sort(blocks.ranges, [&](const Blocks::Range& one, const Blocks::Range& two) {
+    const auto middleStep = [&](const Blocks::Range& range) {
+      return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
+    };
+    return middleStep(one) < middleStep(two);
+  });
   return blocks;
 }
 
@@ -341,7 +340,7 @@ class Sweep {
     const std::int32_t n = annulus_.numberAt[tracer_.placeOf[r]];
     if (annulus_.irregular(n) < 0) return false;
     const auto& links = annulus_.links[n];
-    return std::find(links.begin(), links.end(), wall_) != links.end();
+    return std::ranges::find(links, wall_) != links.end();
   }
 
   /// Follows the trajectories of all ranks that next() gives until it gives -1.

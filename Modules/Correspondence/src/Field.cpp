@@ -70,7 +70,7 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
       if (annulus.links[n][d] < 0 && annulus.numberAt[q] >= 0) cut[n] = 1;
     }
   });
-  if (std::find(cut.begin(), cut.end(), 1) != cut.end()) onCut = std::move(cut);
+  if (std::ranges::find(cut, 1) != cut.end()) onCut = std::move(cut);
   rankTissue();
   prepareCells();
   view_.cellAt = cellAt_.data();
@@ -904,7 +904,7 @@ Trace TrajectoryTracer::trace(const Point& start, double target) const {
 
 Point Path::at(double arc) const {
   if (points.size() == 1 || arc <= 0) return points.front();
-  const auto next = std::upper_bound(along.begin(), along.end(), static_cast<float>(arc));
+  const auto next = std::ranges::upper_bound(along, static_cast<float>(arc));
   if (next == along.end()) return points.back();
   const std::size_t k = next - along.begin();
   const double span = along[k] - along[k - 1];

@@ -97,13 +97,13 @@ std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& heig
   for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
     if (height[v] > 0) order.push_back(v);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
+  std::ranges::stable_sort(order,
+                           [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
   std::vector<Peak> peaks;
   std::vector<bool> taken(near.size(), false);
   for (const std::int32_t top : order) {
-    const bool peak = std::none_of(near[top].begin(), near[top].end(),
-                                   [&](std::int32_t w) { return height[w] > height[top]; });
+    const bool peak =
+        std::ranges::none_of(near[top], [&](std::int32_t w) { return height[w] > height[top]; });
     if (!peak || taken[top]) continue;
     Peak found{top, 0};
     std::vector<std::int32_t> stack = {top};
@@ -226,12 +226,11 @@ class CutSearch {
       for (const Peak& peak : peaks) {
         const std::int32_t place = trial_.coarse.vertexOrigin[peak.vertex];
         if (places.size() >= upTo) return;
-        if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+        if (std::ranges::find(places, place) == places.end()) places.push_back(place);
       }
     };
     take(kHighest);
-    std::stable_sort(peaks.begin(), peaks.end(),
-                     [](const Peak& a, const Peak& b) { return a.beneath > b.beneath; });
+    std::ranges::stable_sort(peaks, std::ranges::greater{}, &Peak::beneath);
     take(kFurther);
     return places;
   }

@@ -197,7 +197,7 @@ std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int3
   std::vector<std::array<std::int32_t, 3>> keys(sound.size());
   parallelFor(sound.size(), kTopologyGrain, [&](std::size_t i) {
     keys[i] = {faces(sound[i], 0), faces(sound[i], 1), faces(sound[i], 2)};
-    std::sort(keys[i].begin(), keys[i].end());
+    std::ranges::sort(keys[i]);
   });
   return countRepeated(
       keys.size(),
@@ -316,7 +316,7 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < sound.size(); ++i) {
     soundFaces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(sound[i]);
   }
-  const std::int64_t usedCount = std::count(used.begin(), used.end(), true);
+  const std::int64_t usedCount = std::ranges::count(used, true);
   condition.unusedVertices = condition.vertices - usedCount;
   condition.duplicateFaces = countDuplicateFaces(mesh.faces, sound);
   condition.coincidentVertices = countCoincident(mesh, used);

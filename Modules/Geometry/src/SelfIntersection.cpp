@@ -110,7 +110,7 @@ std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh,
   std::vector<FacePair> pairs;
   intersect(mesh, {&own, &own, 0}, marked, marked, pairs);
   intersect(mesh, {&own, &rest, 0}, marked, others, pairs);
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 

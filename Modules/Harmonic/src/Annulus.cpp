@@ -269,7 +269,7 @@ Contacts contactsOf(const Annulus& annulus, const std::vector<Code>& sites) {
     all.inner.insert(all.inner.end(), some.inner.begin(), some.inner.end());
     all.boundary += some.boundary;
   }
-  std::sort(all.inner.begin(), all.inner.end());
+  std::ranges::sort(all.inner);
   return all;
 }
 
@@ -281,7 +281,7 @@ std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
   const auto strides = annulus.strides();
   const auto find = [&](std::size_t p) {
-    const auto at = std::lower_bound(voxels.begin(), voxels.end(), p);
+    const auto at = std::ranges::lower_bound(voxels, p);
     return at != voxels.end() && *at == p ? static_cast<std::int32_t>(at - voxels.begin()) : -1;
   };
   DisjointSets pieces(voxels.size());
@@ -296,8 +296,7 @@ std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus
   for (const std::size_t p : inner) ++faces[pieces.root(find(p))];
   std::vector<std::pair<std::size_t, std::size_t>> places;
   for (const auto& [root, count] : faces) places.emplace_back(count, voxels[root]);
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(places, [](const auto& a, const auto& b) { return a.first > b.first; });
   return places;
 }
 
@@ -333,7 +332,7 @@ void noteContacts(Annulus& annulus, const std::vector<Code>& sites, const Monito
   if (annulus.planar) return warnOfOpenRings(annulus, contacts, monitor);
   // Voxel faces have 3/2 of the area of a surface that has all directions; two boundaries.
   constexpr double kStaircase = 1.5;
-  const auto tissue = static_cast<double>(std::count(sites.begin(), sites.end(), kTissueCode));
+  const auto tissue = static_cast<double>(std::ranges::count(sites, kTissueCode));
   const double thickness = 2 * kStaircase * tissue / static_cast<double>(contacts.boundary);
   const double disc = kPi * thickness * thickness;  // voxel faces
   std::size_t faces = 0;
@@ -959,7 +958,7 @@ VolumeOnDemand<Label> maskOf(const Annulus& annulus, const std::vector<std::int3
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, const std::vector<Label>& wanted) {
   Volume<std::uint8_t> volume(labels.grid, 0);
   parallelFor(labels.size(), 1 << 16, [&](std::size_t v) {
-    volume[v] = std::find(wanted.begin(), wanted.end(), labels[v]) != wanted.end();
+    volume[v] = std::ranges::find(wanted, labels[v]) != wanted.end();
   });
   return volume;
 }

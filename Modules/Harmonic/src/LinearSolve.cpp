@@ -169,8 +169,8 @@ class BiCGStab {
       // Breakdown: begin again from here.
       shadow_ = r_;
       rhoNext_ = norm_ * norm_;
-      std::fill(p_.begin(), p_.end(), 0);
-      std::fill(v_.begin(), v_.end(), 0);
+      std::ranges::fill(p_, 0);
+      std::ranges::fill(v_, 0);
       rho_ = alpha_ = omega_ = 1;
     }
     const double beta = rhoNext_ / rho_ * alpha_ / omega_, back = omega_ * vScale_;

@@ -278,8 +278,7 @@ LabelMap readFreeSurferAnnot(const std::filesystem::path& path, ByteView bytes) 
     labels.keys[static_cast<Eigen::Index>(v)] = found == keyOf.end() ? -1 : found->second;
   }
   if (outside) labels.table.push_back({-1, "none", {0, 0, 0, 0}});
-  std::sort(labels.table.begin(), labels.table.end(),
-            [](const LabelEntry& a, const LabelEntry& b) { return a.key < b.key; });
+  std::ranges::sort(labels.table, {}, &LabelEntry::key);
   return labels;
 }
 

@@ -62,7 +62,7 @@ bool isSecond(const std::filesystem::path& path, const std::string& attribute,
               const std::string& word, std::initializer_list<const char*> first,
               std::initializer_list<const char*> second) {
   const auto among = [&](std::initializer_list<const char*> words) {
-    return std::any_of(words.begin(), words.end(), [&](const char* one) { return word == one; });
+    return std::ranges::any_of(words, [&](const char* one) { return word == one; });
   };
   if (among(second)) return true;
   if (!among(first)) {
@@ -194,8 +194,7 @@ std::vector<LabelEntry> tableOf(const std::filesystem::path& path, const XmlElem
     }
     table.push_back(entry);
   }
-  std::sort(table.begin(), table.end(),
-            [](const LabelEntry& a, const LabelEntry& b) { return a.key < b.key; });
+  std::ranges::sort(table, {}, &LabelEntry::key);
   return table;
 }
 

@@ -394,8 +394,7 @@ StoredVolume readNifti(ByteSource& source, const std::filesystem::path&,
 
 Bytes niftiHeader(const VolumeToWrite& volume) {
   const Grid& grid = volume.grid;
-  const bool one = *std::max_element(grid.size.begin(), grid.size.end()) <=
-                   std::numeric_limits<std::int16_t>::max();
+  const bool one = *std::ranges::max_element(grid.size) <= std::numeric_limits<std::int16_t>::max();
   constexpr std::size_t kExtensionFlag = 4;  // four zeros: no extension follows
   Bytes bytes((one ? kHeader1 : kHeader2) + kExtensionFlag);
   const auto put = [&](std::size_t at, auto value) { store(bytes.data() + at, value, false); };

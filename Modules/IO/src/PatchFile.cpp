@@ -82,8 +82,8 @@ Patch readPatch(const std::filesystem::path& path, std::optional<Eigen::Index> v
     }
   }
   std::vector<std::int32_t> sorted = patch.vertices;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
   if (twice != sorted.end()) {
     refuse(path, "names vertex " + std::to_string(*twice) + " twice");
   }

@@ -39,7 +39,7 @@ Parcellation parcellate(const TriangleMesh& sphere, const Eigen::VectorXd& foldi
                         const std::vector<LabelledSphere>& atlases) {
   if (atlases.empty()) throw InvalidInput("no labelled surface is given");
   const bool weigh = atlases.size() > 1 && folding.size() == sphere.vertexCount() &&
-                     std::all_of(atlases.begin(), atlases.end(), [](const LabelledSphere& atlas) {
+                     std::ranges::all_of(atlases, [](const LabelledSphere& atlas) {
                        return atlas.folding.size() == atlas.sphere.vertexCount();
                      });
   std::vector<std::map<Label, double>> votes(static_cast<std::size_t>(sphere.vertexCount()));

@@ -151,9 +151,8 @@ VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& ke
     const auto i = static_cast<Eigen::Index>(row);
     std::map<Label, double> votes;
     for (Row it(weights, i); it; ++it) votes[keys[it.index()]] += it.value();
-    const auto most =
-        std::max_element(votes.begin(), votes.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most = std::ranges::max_element(
+        votes, [](const auto& a, const auto& b) { return a.second < b.second; });
     result[i] = most->first;
   });
   return result;

@@ -35,7 +35,7 @@ std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
   const std::string table = fileText(path);
   const std::vector<std::string> headings = cellsOf(table.substr(0, table.find('\n')));
   for (const char* heading : {"name", kThickness, kArea}) {
-    if (std::find(headings.begin(), headings.end(), heading) == headings.end()) {
+    if (std::ranges::find(headings, heading) == headings.end()) {
       throw IOError(path.string() + ": has no column " + heading);
     }
   }

@@ -74,7 +74,7 @@ std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, cons
       candidates.push_back(step.path() / kRecordName);
     }
   }
-  std::sort(candidates.begin(), candidates.end());
+  std::ranges::sort(candidates);
   for (const auto& candidate : candidates) {
     if (auto found = listedIn(candidate, std::nullopt, digest)) return found;
   }
@@ -243,9 +243,9 @@ Json readRecord(const std::filesystem::path& path) {
 bool staysBelow(const std::filesystem::path& name) {
   const std::string text = name.string();
   const bool controls =
-      std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+      std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (text.empty() || name.is_absolute() || controls) return false;
-  return std::none_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
+  return std::ranges::none_of(name, [](const auto& part) { return part == ".."; });
 }
 
 std::optional<std::filesystem::path> ownFile(const std::filesystem::path& folder,

@@ -149,7 +149,7 @@ Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& cont
   for (const float v : image.data) {
     if (v > 0 && std::isfinite(v)) values.push_back(v);
   }
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
   if (!values.empty()) grey.high = 1.05 * values[values.size() - 1 - values.size() / 200];
   WorldBox frame = tissue.empty() ? box : tissue;

@@ -217,8 +217,7 @@ Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eig
   constexpr Colour kPlain = {0.60f, 0.58f, 0.56f};
   const bool parts = !keys.empty() && border == Border::AroundFaces;
   const bool outside = parts && !surface.isWithin(face, keys);
-  const auto nearest =
-      static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  const auto nearest = static_cast<int>(std::ranges::max_element(weight) - weight.begin());
   Colour base = kPlain;
   if (!colours.empty() && filling == Filling::Discrete && !outside) {
     base = colours[surface.faces(face, nearest)];

@@ -96,7 +96,7 @@ std::vector<Label> majorityAcross(std::span<const Label> labels, std::size_t dep
   std::vector<std::size_t> order(depths);
   for (std::size_t d = 0; d < depths; ++d) order[d] = d;
   const double middle = 0.5 * static_cast<double>(depths - 1);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     return std::abs(static_cast<double>(a) - middle) < std::abs(static_cast<double>(b) - middle);
   });
   std::vector<Label> result(count, kNoLabel);
@@ -128,7 +128,7 @@ Regions::Regions(const std::vector<RegionTable>& parcellations) {
     }
     std::map<Label, std::int32_t> number;
     for (const RegionName& entry : one.table) {
-      if (std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end()) continue;
+      if (std::ranges::find(one.keys, entry.key) == one.keys.end()) continue;
       if (!number.emplace(entry.key, static_cast<std::int32_t>(names_.size())).second) continue;
       names_.push_back(entry.name);
     }

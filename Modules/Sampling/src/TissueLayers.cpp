@@ -85,8 +85,8 @@ LayerShares layersByDepth(const TissueVoxels& tissue, int layers) {
         for (const double x : offset) {
           const double depth = tissue.depth[n] + slope.dot(Vector(x, y, z));
           const int layer = std::clamp(static_cast<int>(std::floor(depth * layers)), 0, layers - 1);
-          auto found = std::find_if(part.begin(), part.end(),
-                                    [layer](const auto& p) { return p.first == layer; });
+          auto found =
+              std::ranges::find_if(part, [layer](const auto& p) { return p.first == layer; });
           if (found == part.end()) found = part.insert(part.end(), {layer, 0.0F});
           found->second += 1;
         }

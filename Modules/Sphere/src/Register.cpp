@@ -140,8 +140,7 @@ struct Start {
 };
 
 void keepBest(std::vector<Start>& starts, std::size_t count) {
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const Start& a, const Start& b) { return a.energy < b.energy; });
+  std::ranges::stable_sort(starts, {}, &Start::energy);
   starts.resize(count);
 }
 

@@ -20,7 +20,7 @@ Cluster grow(const geometry::IndexLists& neighbours, std::vector<bool>& waiting,
       cluster.vertices.push_back(w);
     }
   }
-  std::sort(cluster.vertices.begin(), cluster.vertices.end());
+  std::ranges::sort(cluster.vertices);
   return cluster;
 }
 
@@ -50,8 +50,7 @@ std::vector<Cluster> findClusters(const geometry::IndexLists& neighbours,
     clusters.push_back(grow(neighbours, waiting, static_cast<std::int32_t>(v)));
     measure(clusters.back(), values, threshold, areas, weights);
   }
-  std::stable_sort(clusters.begin(), clusters.end(),
-                   [](const Cluster& a, const Cluster& b) { return a.extent > b.extent; });
+  std::ranges::stable_sort(clusters, std::ranges::greater{}, &Cluster::extent);
   return clusters;
 }
 

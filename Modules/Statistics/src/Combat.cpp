@@ -53,11 +53,10 @@ std::pair<double, double> posterior(double mean, double variance, double n, cons
 }
 
 std::vector<double> countsOf(const std::vector<int>& sites) {
-  std::vector<double> counts(
-      static_cast<std::size_t>(1 + *std::max_element(sites.begin(), sites.end())));
+  std::vector<double> counts(static_cast<std::size_t>(1 + *std::ranges::max_element(sites)));
   for (const int s : sites) ++counts[static_cast<std::size_t>(s)];
   if (counts.size() < 2) throw InvalidInput("--site combat: there is one site");
-  if (*std::min_element(counts.begin(), counts.end()) < 2) {
+  if (*std::ranges::min_element(counts) < 2) {
     throw InvalidInput("--site combat: a site has one person, so that its spread is not known");
   }
   return counts;

@@ -85,7 +85,7 @@ class Names {
   /// p x k: one column of weights, or one for each column of a term.
   [[nodiscard]] Eigen::MatrixXd weightsOf(const std::string& name) const {
     const auto p = static_cast<Eigen::Index>(design_.columns.size());
-    const auto column = std::find(design_.columns.begin(), design_.columns.end(), name);
+    const auto column = std::ranges::find(design_.columns, name);
     if (column != design_.columns.end()) {
       return Eigen::VectorXd::Unit(p, column - design_.columns.begin());
     }

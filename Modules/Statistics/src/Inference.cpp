@@ -93,10 +93,9 @@ void findAllClusters(const ContrastMaps& maps, const Contrast& contrast,
       inference.clusters.push_back(judge.judge(c, negative, maps.statistic[c.peak]));
     }
   }
-  std::stable_sort(inference.clusters.begin(), inference.clusters.end(),
-                   [](const FoundCluster& a, const FoundCluster& b) {
-                     return a.cluster.extent > b.cluster.extent;
-                   });
+  std::ranges::stable_sort(inference.clusters, [](const FoundCluster& a, const FoundCluster& b) {
+    return a.cluster.extent > b.cluster.extent;
+  });
 }
 
 Eigen::VectorXd fieldP(const ContrastMaps& maps, const Contrast& contrast,

@@ -66,7 +66,7 @@ Resels reselsOf(const Faces& faces, const geometry::MeshTopology& topology,
                 const Eigen::VectorXd& roughness, const std::vector<bool>& mask) {
   Resels resels;
   resels.perVertex = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mask.size()));
-  resels.places = static_cast<double>(std::count(mask.begin(), mask.end(), true));
+  resels.places = static_cast<double>(std::ranges::count(mask, true));
   double euler = resels.places, halfLength = 0, area = 0;
   for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
     if (!mask[static_cast<std::size_t>(topology.edges(e, 0))] ||

@@ -33,7 +33,7 @@ class Profile {
         p_(x.cols()),
         squares_(x.transpose() * x),
         values_(residuals.squaredNorm()) {
-    const int count = 1 + *std::max_element(groups.begin(), groups.end());
+    const int count = 1 + *std::ranges::max_element(groups);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(p_, count);
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(count);
     std::vector<int> sizes(static_cast<std::size_t>(count), 0);

@@ -115,7 +115,7 @@ double Shuffler::possible() const {
 void Shuffler::draw(std::int64_t number, std::span<std::int32_t> order,
                     std::span<float> signs) const {
   std::iota(order.begin(), order.end(), 0);
-  std::fill(signs.begin(), signs.end(), 1.0F);
+  std::ranges::fill(signs, 1.0F);
   if (number == 0) return;
   auto code = static_cast<std::uint64_t>(number);
   Stream stream(seed_, code);

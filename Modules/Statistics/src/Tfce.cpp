@@ -18,19 +18,19 @@ Tfce::Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& are
       extent_(areas.size()) {}
 
 void Tfce::enhance(std::span<const float> values, std::span<float> enhanced) {
-  std::fill(enhanced.begin(), enhanced.end(), 0.0F);
+  std::ranges::fill(enhanced, 0.0F);
   enhanceSide(values, 1, enhanced);
   enhanceSide(values, -1, enhanced);
 }
 
 void Tfce::enhanceSide(std::span<const float> values, float sign, std::span<float> enhanced) {
   order_.clear();
-  std::fill(parent_.begin(), parent_.end(), -1);
+  std::ranges::fill(parent_, -1);
   for (std::size_t v = 0; v < values.size(); ++v) {
     const float height = sign * values[v];
     if (height > 0) order_.emplace_back(-height, static_cast<std::int32_t>(v));
   }
-  std::sort(order_.begin(), order_.end());
+  std::ranges::sort(order_);
   const double power = options_.height + 1;
   for (const auto& [negative, v] : order_) {
     const double height = -static_cast<double>(negative);

@@ -66,8 +66,8 @@ std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) 
 
 std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
   const std::vector<std::string> about = aboutColumns(rows);
-  const auto done = std::count_if(rows.begin(), rows.end(),
-                                  [](const HeartRow& row) { return row.state == "done"; });
+  const auto done =
+      std::ranges::count_if(rows, [](const HeartRow& row) { return row.state == "done"; });
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +

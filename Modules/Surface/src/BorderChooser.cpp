@@ -70,7 +70,7 @@ Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
 }
 
 std::int64_t BorderChooser::missing() const {
-  return std::count(has_.begin(), has_.end(), std::uint8_t{0});
+  return std::ranges::count(has_, std::uint8_t{0});
 }
 
 bool BorderChooser::comesNear(std::size_t v) const {

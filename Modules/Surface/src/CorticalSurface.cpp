@@ -263,10 +263,10 @@ double heightOf(const Point& a, const Point& b, const Point& c) {
 /// True if a move would make a face lower than `least` mm, and lower than it is.
 bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double least) {
   const auto& ring = mesh.facesOf(v);
-  return std::any_of(ring.begin(), ring.end(), [&](std::int32_t f) {
+  return std::ranges::any_of(ring, [&](std::int32_t f) {
     const auto& c = mesh.face(f);
     std::array<Point, 3> now = {mesh.at(c[0]), mesh.at(c[1]), mesh.at(c[2])}, then = now;
-    then[std::find(c.begin(), c.end(), v) - c.begin()] = to;
+    then[std::ranges::find(c, v) - c.begin()] = to;
     const double height = heightOf(then[0], then[1], then[2]);
     return height < least && height < heightOf(now[0], now[1], now[2]);
   });

@@ -48,7 +48,7 @@ void requireInside(const Mask& mask, bool closeEdges, const Monitor& monitor) {
 }
 
 void sortUnique(Labels& labels) {
-  std::sort(labels.begin(), labels.end());
+  std::ranges::sort(labels);
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
 }
 
@@ -175,8 +175,8 @@ void checkRoles(const Histogram& histogram, const TissueOptions& options, const 
   if (!options.fill.empty()) requirePresent(histogram, roles.fill, "fill");
   if (!options.insulated.empty()) requirePresent(histogram, roles.insulated, "insulated");
   for (const Label label : roles.grey) {
-    if (std::binary_search(roles.white.begin(), roles.white.end(), label) ||
-        std::binary_search(roles.fill.begin(), roles.fill.end(), label)) {
+    if (std::ranges::binary_search(roles.white, label) ||
+        std::ranges::binary_search(roles.fill, label)) {
       throw InvalidInput("grey: label " + std::to_string(label) + " is also white or filled");
     }
   }
@@ -229,7 +229,7 @@ std::string structureOf(const Roles& roles, const TissueOptions& options) {
 
 Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
                        const std::string& name) {
-  const auto [low, high] = std::minmax_element(scalars.data.begin(), scalars.data.end());
+  const auto [low, high] = std::ranges::minmax_element(scalars.data);
   if (scalars.size() == 0) throw InvalidInput(name + ": empty volume");
   const bool isShare = *low >= 0;
   const double boundary = level.value_or(isShare ? 0.5 * *high : 0.0);

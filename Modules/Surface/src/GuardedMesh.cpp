@@ -81,7 +81,7 @@ void FaceRing::remove(std::int32_t face) {
   if (many_.empty()) return;
   many_.pop_back();
   if (count_ > few_.size()) return;
-  std::copy(many_.begin(), many_.end(), few_.begin());
+  std::ranges::copy(many_, few_.begin());
   many_.clear();
 }
 
@@ -486,7 +486,7 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
     return false;
   };
   facesNear(r, all, scratch);
-  return std::none_of(scratch.near.begin(), scratch.near.end(), meets);
+  return std::ranges::none_of(scratch.near, meets);
 }
 
 void GuardedMesh::facesNear(const CellRange& range, const Box& box, Scratch& scratch) const {
@@ -720,7 +720,7 @@ constexpr int kSlab = 2 * kHalfSlab;
 }  // namespace
 
 int GuardedMesh::slabAxis() const {
-  return static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
+  return static_cast<int>(std::ranges::max_element(cellSize_) - cellSize_.begin());
 }
 
 template <class Item, class Work>
@@ -829,7 +829,7 @@ std::int64_t GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices
   const std::vector<std::uint8_t> stand = surface::moveTogether(mesh, vertices, attempts, to);
   for (const std::int32_t v : vertices) positions_[v] = mesh.positions.row(v);
   reboxAll();
-  return std::count(stand.begin(), stand.end(), static_cast<std::uint8_t>(attempts));
+  return std::ranges::count(stand, static_cast<std::uint8_t>(attempts));
 }
 
 void GuardedMesh::reboxAll() {

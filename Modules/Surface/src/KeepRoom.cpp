@@ -58,7 +58,7 @@ class Pushes {
 
   /// In the order of their numbers.
   [[nodiscard]] const std::vector<std::int32_t>& vertices() {
-    std::sort(pushed_.begin(), pushed_.end());
+    std::ranges::sort(pushed_);
     return pushed_;
   }
   /// From `at`, by a share of the mean of the pushes, but not far from `start`.

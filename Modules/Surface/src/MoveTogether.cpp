@@ -77,7 +77,7 @@ class MarkedCells {
 /// Pairs of faces that meet, at least one of each pair marked.
 std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMarks& marked) {
   constexpr double kMany = 0.5;  // share of faces beyond which all are looked through
-  const auto count = std::count(marked.begin(), marked.end(), std::uint8_t{1});
+  const auto count = std::ranges::count(marked, std::uint8_t{1});
   if (static_cast<double>(count) > kMany * static_cast<double>(marked.size())) {
     return geometry::findSelfIntersections(mesh);
   }
@@ -151,7 +151,7 @@ std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
   for (;;) {
     const auto pairs = meetings(mesh, facesAt(mesh, changed));
     if (pairs.empty()) return attempt;
-    std::fill(changed.begin(), changed.end(), std::uint8_t{0});
+    std::ranges::fill(changed, std::uint8_t{0});
     std::vector<std::int32_t> retreating;
     for (const geometry::FacePair& pair : pairs) {
       for (const std::int32_t face : pair) {

@@ -81,7 +81,7 @@ std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
     const auto second = topology.vertexVertices[w];
     near.insert(near.end(), second.begin(), second.end());
   }
-  std::sort(near.begin(), near.end());
+  std::ranges::sort(near);
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
 }

@@ -121,8 +121,7 @@ class Thinner {
         if (length < limit) edges.push_back({static_cast<int>(length * perClass), {a, b}});
       }
     }
-    std::stable_sort(edges.begin(), edges.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::ranges::stable_sort(edges, [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [length, e] : edges) {
       if (joined_[e[0]] != e[0] || joined_[e[1]] != e[1]) continue;
       if ((positions_[e[0]] - positions_[e[1]]).squaredNorm() >= limit * limit) continue;
@@ -299,8 +298,8 @@ bool isFan(const std::vector<Sides>& sides) {
   for (const int way : {0, 1}) {
     std::size_t at = 0;
     for (;;) {
-      const auto found = std::find_if(sides.begin(), sides.end(),
-                                      [&](const Sides& s) { return s[1 - way] == sides[at][way]; });
+      const auto found =
+          std::ranges::find_if(sides, [&](const Sides& s) { return s[1 - way] == sides[at][way]; });
       if (found == sides.end()) break;  // a rim: the other way round
       at = found - sides.begin();
       if (at == 0 || ++count > sides.size()) return at == 0 && count == sides.size();
@@ -380,7 +379,7 @@ TriangleMesh thinned(const TriangleMesh& given, const LevelSet& level, double ed
           marked[found.faces(row, 0)] || marked[found.faces(row, 1)] || marked[found.faces(row, 2)];
     }
     pairs = geometry::findSelfIntersections(found, changed);
-    std::fill(marked.begin(), marked.end(), std::uint8_t{0});
+    std::ranges::fill(marked, std::uint8_t{0});
     markBranched(found.faces, marked);
   }
   found = compacted(found);

@@ -60,7 +60,7 @@ std::int64_t fillPockets(Volume<Site>& roles) {
   const Grid& grid = roles.grid;
   const std::array<std::ptrdiff_t, 3> strides = {
       1, grid.size[0], static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1]};
-  const auto tissue = std::count(roles.data.begin(), roles.data.end(), Site::Tissue);
+  const auto tissue = std::ranges::count(roles.data, Site::Tissue);
   const auto most = static_cast<std::size_t>(kPocket * static_cast<double>(tissue));
   std::vector<std::uint8_t> seen(roles.size(), 0);
   std::vector<std::size_t> piece;
@@ -109,7 +109,7 @@ Volume<Site> sitesOf(const TissueMasks& masks) {
 }
 
 Ribbon solve(const Volume<Site>& sites, const Monitor& monitor) {
-  if (std::find(sites.data.begin(), sites.data.end(), Site::Outer) == sites.data.end()) {
+  if (std::ranges::find(sites.data, Site::Outer) == sites.data.end()) {
     throw InvalidInput("labels: nothing lies outside of the tissue");
   }
   Monitor stoppable = monitor;
@@ -220,9 +220,8 @@ TriangleMesh extractSheet(const Ribbon& field, const SheetLevel& sheet, SheetFac
   facts.piecesLeftOut = pieces.leftOut;
   const Grid& image = field.annulus.grid;
   const auto reachesEdge = [&](const std::vector<std::int32_t>& rim) {
-    return std::any_of(rim.begin(), rim.end(), [&](std::int32_t v) {
-      return onImageEdge(image, pieces.mesh.positions.row(v));
-    });
+    return std::ranges::any_of(
+        rim, [&](std::int32_t v) { return onImageEdge(image, pieces.mesh.positions.row(v)); });
   };
   Closed closed = withHolesClosed(pieces.mesh, 2 * kPi * kSmallHole * thickness, reachesEdge);
   facts.holesClosed = closed.holes;

@@ -51,7 +51,7 @@ std::string listOf(const std::set<Label>& values) {
 double enclosedShare(const std::vector<Volume<Label>>& frames, Label label, Label wall) {
   std::size_t outline = 0, touching = 0;
   for (const Volume<Label>& frame : frames) {
-    if (std::find(frame.data.begin(), frame.data.end(), wall) == frame.data.end()) continue;
+    if (std::ranges::find(frame.data, wall) == frame.data.end()) continue;
     const auto& size = frame.grid.size;
     const auto visit = [&](Label a, Label b) {
       if (a == b || (a != label && b != label)) return;

@@ -76,7 +76,7 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
 }
 
 bool has(const Volume<Label>& heart, Label label) {
-  return std::find(heart.data.begin(), heart.data.end(), label) != heart.data.end();
+  return std::ranges::find(heart.data, label) != heart.data.end();
 }
 
 /// Solves on the tissue and keeps the lengths.

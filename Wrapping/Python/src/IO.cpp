@@ -43,8 +43,7 @@ io::LabelMap labelsOf(const Eigen::Matrix<Label, Eigen::Dynamic, 1>& keys, const
     }
     labels.table.push_back(entry);
   }
-  std::sort(labels.table.begin(), labels.table.end(),
-            [](const auto& a, const auto& b) { return a.key < b.key; });
+  std::ranges::sort(labels.table, [](const auto& a, const auto& b) { return a.key < b.key; });
   return labels;
 }
 

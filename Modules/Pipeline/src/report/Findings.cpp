@@ -66,11 +66,11 @@ void findNumbers(ResultFolder& results) {
   report::ReportFindings& findings = results.content().findings;
   std::vector<std::string> sides;
   for (const StepFolder& step : results.steps()) {
-    if (!step.side().empty() && std::find(sides.begin(), sides.end(), step.side()) == sides.end()) {
+    if (!step.side().empty() && std::ranges::find(sides, step.side()) == sides.end()) {
       sides.push_back(step.side());
     }
   }
-  std::sort(sides.begin(), sides.end());
+  std::ranges::sort(sides);
   if (sides.size() < 2) sides = {""};
   findings.columns = sides;
   listDescribed(results, sides, findings);
