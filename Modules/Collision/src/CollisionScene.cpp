@@ -70,7 +70,7 @@ BoundsPyramid pyramidOf(const CollisionScene& scene, FeatureKind kind,
     return bounds;
   };
   std::vector<MotionBounds> bounds(items.size());
-  parallelFor(items.size(), 1024, [&](std::size_t n) {
+  parallelFor(items.size(), [&](std::size_t n) {
     const std::int32_t i = items[n];
     bounds[n] = kind == FeatureKind::Vertex ? ofVertex(i)
                 : kind == FeatureKind::Edge ? ofRow(scene.edges().row(i))

@@ -179,7 +179,7 @@ double volumeOf(const AnatomicalGrid& grid, Eigen::Index cell) {
 /// Takes out the cells that are turned over or flat at a corner.
 void leaveOutDegenerate(AnatomicalGrid& grid) {
   std::vector<std::uint8_t> good(static_cast<std::size_t>(grid.cells.rows()));
-  parallelFor(good.size(), 1024, [&](std::size_t c) {
+  parallelFor(good.size(), [&](std::size_t c) {
     good[c] = lowestCorner(grid, static_cast<Eigen::Index>(c)) > kLevel;
   });
   Eigen::Index kept = 0;

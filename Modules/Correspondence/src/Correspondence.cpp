@@ -66,7 +66,7 @@ Steps stepsOf(const Tracer& tracer) {
   Steps steps;
   steps.count = count;
   steps.of.resize(n);
-  parallelFor(n, kBlock, [&](std::size_t r) {
+  parallelFor(n, [&](std::size_t r) {
     const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
     const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
     steps.of[r] = static_cast<std::uint16_t>(step);
@@ -222,7 +222,7 @@ class Sweep {
     turn_.resize(arrivals_.size());
     state_ = std::vector<std::atomic<State>>(arrivals_.size());
     ownTurn_.resize(arrivals_.size());
-    parallelFor(arrivals_.size(), kBlock, [&](std::size_t r) {
+    parallelFor(arrivals_.size(), [&](std::size_t r) {
       const std::size_t step = steps.of[r];
       ownTurn_[r] = static_cast<std::uint16_t>(1 + (inner_ ? step : steps.count - 1 - step));
       turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : ownTurn_[r];
@@ -656,7 +656,7 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
   result.innerPoint.resize(annulus.count());
   result.outerPoint.resize(annulus.count());
   const Eigen::Matrix3f toWorld = annulus.grid.direction.cast<float>();
-  parallelFor(annulus.count(), kBlock, [&](std::size_t r) {
+  parallelFor(annulus.count(), [&](std::size_t r) {
     const std::int32_t n = annulus.numberAt[field.placeOf[r]];
     const auto take = [&](const Arrival& arrival, double& distance, Eigen::Vector3f& point) {
       distance = arrival[3];
@@ -678,8 +678,7 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
 
 std::vector<double> thicknessOf(const Correspondence& correspondence) {
   std::vector<double> thickness(correspondence.innerDistance.size());
-  parallelFor(thickness.size(), 1 << 14,
-              [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
+  parallelFor(thickness.size(), [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
   return thickness;
 }
 

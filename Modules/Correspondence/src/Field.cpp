@@ -63,7 +63,7 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   options.maxStep = std::min(options.maxStep, 1.0);
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   const auto strides = annulus.strides();
-  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+  parallelFor(annulus.count(), [&](std::size_t n) {
     if (annulus.irregular(static_cast<std::int32_t>(n)) < 0) return;
     for (int d = 0; d < 6; ++d) {
       const std::int32_t q = annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];

@@ -94,7 +94,7 @@ std::vector<std::uint8_t> nearImageEdge(const Annulus& annulus, const std::array
   std::vector<std::uint8_t> marked(annulus.count(), 0);
   if (correspondence.missing > 0) markLeaving(annulus, nearest, correspondence, marked);
   const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
-  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
+  parallelFor(annulus.count(), [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const double thickness = correspondence.thickness(n);
     if (nearest[n] < 0 || std::isnan(thickness)) return;

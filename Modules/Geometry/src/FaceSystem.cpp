@@ -87,7 +87,7 @@ void FaceSystem::assemble(const std::function<Term(Eigen::Index)>& term) {
   std::vector<Term> terms(std::min<std::size_t>(kBlock, faceBlocks_.size()));
   for (std::size_t begin = 0; begin < faceBlocks_.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, faceBlocks_.size() - begin);
-    parallelFor(count, 512,
+    parallelFor(count,
                 [&](std::size_t n) { terms[n] = term(static_cast<Eigen::Index>(begin + n)); });
     for (std::size_t n = 0; n < count; ++n) {
       const FaceBlocks& to = faceBlocks_[begin + n];

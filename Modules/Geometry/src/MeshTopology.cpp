@@ -50,7 +50,7 @@ std::vector<HalfEdge> sortedHalfEdges(const Faces& faces, Eigen::Index vertexCou
       sides[at[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k};
     }
   }
-  parallelFor(static_cast<std::size_t>(vertexCount), kTopologyGrain, [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(vertexCount), [&](std::size_t v) {
     std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
   });
   return sides;
@@ -76,7 +76,7 @@ IndexLists groupByKey(std::size_t keys, const std::vector<std::array<std::int32_
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
   std::vector<std::int32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (const auto& [key, value] : pairs) lists.values[next[key]++] = value;
-  parallelFor(keys, kTopologyGrain, [&](std::size_t key) {
+  parallelFor(keys, [&](std::size_t key) {
     std::sort(lists.values.begin() + lists.begin[key], lists.values.begin() + lists.begin[key + 1]);
   });
   return lists;
@@ -146,7 +146,7 @@ std::int64_t countRepeated(std::size_t count, const Hash& hash, const Before& be
   std::size_t bins = 1;
   while (kPerBin * bins < count) bins *= 2;
   std::vector<std::uint32_t> binOf(count);
-  parallelFor(count, kTopologyGrain, [&](std::size_t i) {
+  parallelFor(count, [&](std::size_t i) {
     std::uint64_t mixed = hash(i);
     mixed = (mixed ^ (mixed >> 29)) * 0xBF58476D1CE4E5B9U;
     binOf[i] = static_cast<std::uint32_t>((mixed ^ (mixed >> 32)) & (bins - 1));
@@ -195,7 +195,7 @@ std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& 
 
 std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int32_t>& sound) {
   std::vector<std::array<std::int32_t, 3>> keys(sound.size());
-  parallelFor(sound.size(), kTopologyGrain, [&](std::size_t i) {
+  parallelFor(sound.size(), [&](std::size_t i) {
     keys[i] = {faces(sound[i], 0), faces(sound[i], 1), faces(sound[i], 2)};
     std::ranges::sort(keys[i]);
   });

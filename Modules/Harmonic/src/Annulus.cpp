@@ -154,7 +154,7 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
       annulus.place[n] = static_cast<std::int32_t>(p);
     }
   });
-  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+  parallelFor(annulus.count(), [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < 6; ++d) {
       const bool cut = !cutBits.empty() && (cutBits[p] >> d & 1);
@@ -389,7 +389,7 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
   number(annulus, sites, {}, {});
   if (options.boundary == BoundaryModel::Staircase) return annulus;
 
-  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
+  parallelFor(annulus.count(), [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const std::int32_t row = annulus.irregular(n);
     if (row < 0) return;
@@ -609,7 +609,7 @@ std::vector<Code> sitesIn(const Box& box, const Volume<Label>& labels, const Rol
 /// The inner boundary of sites, or the outer one.
 LabelBoundary boundaryOf(const std::vector<Code>& sites, const Box& box, bool outer, int axes) {
   std::vector<std::uint8_t> side(sites.size());
-  parallelFor(side.size(), 1 << 16, [&](std::size_t p) {
+  parallelFor(side.size(), [&](std::size_t p) {
     const auto site = static_cast<Site>(sites[p]);
     if (site == Site::Insulated) {
       side[p] = 255;
@@ -798,7 +798,7 @@ Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer
   const float outerSign = signOfInside(outer, "outer");
   Volume<float> innerLevel(grid), outerLevel(grid);
   Volume<Site> sites(grid, Site::Outer);
-  parallelFor(grid.voxelCount(), 1 << 16, [&](std::size_t v) {
+  parallelFor(grid.voxelCount(), [&](std::size_t v) {
     innerLevel[v] = innerSign * (inner[v] - static_cast<float>(levels.level));
     outerLevel[v] = outerSign * (outer[v] - static_cast<float>(levels.level));
     if (haveInsulated && insulated[v]) {
@@ -815,7 +815,7 @@ Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer
 Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   const auto strides = annulus.strides();
   std::vector<Code> sites(annulus.numberAt.size(), kTissueCode);
-  parallelFor(sites.size(), 1 << 16, [&](std::size_t p) {
+  parallelFor(sites.size(), [&](std::size_t p) {
     switch (annulus.numberAt[p]) {
       case kInner:
         sites[p] = codeOf(Site::Inner);
@@ -832,7 +832,7 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   });
   std::vector<std::uint8_t> cutBits(sites.size(), 0), innerBits(sites.size(), 0);
   // Cuts that the annulus has already.
-  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+  parallelFor(annulus.count(), [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
       const std::int32_t q = p + signOf(d) * strides[axisOf(d)], link = annulus.links[n][d];
@@ -856,7 +856,7 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   }
   Annulus result = annulus;
   number(result, sites, cutBits, innerBits);
-  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
+  parallelFor(annulus.count(), [&](std::size_t n) {
     const std::int32_t old = annulus.irregular(static_cast<std::int32_t>(n));
     if (old < 0) return;
     result.fractions[result.irregular(result.numberAt[annulus.place[n]])] = annulus.fractions[old];
@@ -957,7 +957,7 @@ VolumeOnDemand<Label> maskOf(const Annulus& annulus, const std::vector<std::int3
 
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, const std::vector<Label>& wanted) {
   Volume<std::uint8_t> volume(labels.grid, 0);
-  parallelFor(labels.size(), 1 << 16, [&](std::size_t v) {
+  parallelFor(labels.size(), [&](std::size_t v) {
     volume[v] = std::ranges::find(wanted, labels[v]) != wanted.end();
   });
   return volume;

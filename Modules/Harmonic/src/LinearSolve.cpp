@@ -60,7 +60,7 @@ void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<flo
 
 template <class F>
 void forAll(std::size_t count, const F& f) {
-  parallelFor(count, kSolveGrain, f);
+  parallelFor(count, f);
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -91,7 +91,7 @@ std::vector<double> residualOf(const Annulus& annulus, const Stencil& stencil,
   std::vector<double> r(annulus.count());
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, kSolveGrain, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, [&, begin, offset](std::size_t k) {
         const std::size_t i = begin + k;
         double sum = rhs[i] - u[i];
         for (int d = 0; d < 6; ++d) {

@@ -265,7 +265,7 @@ SessionAverage averageSessions(const std::vector<Volume<float>>& sessions, const
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     checkpoint(monitor);
     Volume<float> session(grid);
-    parallelFor(session.size(), 1 << 14, [&](std::size_t v) {
+    parallelFor(session.size(), [&](std::size_t v) {
       const auto [i, j, k] = grid.subscripts(v);
       const Point at = average.toSession[s] * grid.toWorld(Vector(i, j, k));
       session[v] = gains[s] * cubicAt(sessions[s], sessions[s].grid.toIndex(at));

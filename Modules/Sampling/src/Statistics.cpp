@@ -15,8 +15,6 @@
 namespace explica::sampling {
 namespace {
 
-constexpr std::size_t kTableGrain = 4096;  // elements a task
-
 /// Sums about a first value, so that a large mean does not swallow the deviation.
 struct Sums {
   double shift = kNaN, sum = 0, squares = 0;
@@ -75,7 +73,7 @@ Sums sumsOf(std::span<const float> values, const std::vector<std::uint8_t>& want
 std::vector<float> acrossDepths(std::span<const float> values, std::size_t depths, Across across) {
   const std::size_t count = depths == 0 ? 0 : values.size() / depths;
   std::vector<float> result(count, std::numeric_limits<float>::quiet_NaN());
-  parallelFor(count, kTableGrain, [&](std::size_t v) {
+  parallelFor(count, [&](std::size_t v) {
     double sum = 0;
     float largest = 0;
     int known = 0;
@@ -100,7 +98,7 @@ std::vector<Label> majorityAcross(std::span<const Label> labels, std::size_t dep
     return std::abs(static_cast<double>(a) - middle) < std::abs(static_cast<double>(b) - middle);
   });
   std::vector<Label> result(count, kNoLabel);
-  parallelFor(count, kTableGrain, [&](std::size_t v) {
+  parallelFor(count, [&](std::size_t v) {
     std::size_t most = 0;
     for (const std::size_t d : order) {
       const Label label = labels[d * count + v];

@@ -53,7 +53,7 @@ Eigen::VectorXd weightsOf(const Eigen::VectorXd& sd) {
 Eigen::VectorXd valuesAt(const geometry::SphereLocator& locator, const Eigen::VectorXd& values,
                          const Positions& directions) {
   Eigen::VectorXd result(directions.rows());
-  parallelFor(static_cast<std::size_t>(directions.rows()), 512, [&](std::size_t n) {
+  parallelFor(static_cast<std::size_t>(directions.rows()), [&](std::size_t n) {
     const auto v = static_cast<Eigen::Index>(n);
     const auto place = locator.locate(directions.row(v).transpose());
     double sum = 0;

@@ -50,7 +50,7 @@ class FoldingEnergy final : public VertexEnergy {
 
   void add(const Positions& sphere, const std::vector<TangentFrame>& frames,
            geometry::FaceSystem& system) const override {
-    parallelFor(static_cast<std::size_t>(sphere.rows()), kVerticesATask, [&](std::size_t v) {
+    parallelFor(static_cast<std::size_t>(sphere.rows()), [&](std::size_t v) {
       const Terms terms = at(sphere, v);
       const auto vertex = static_cast<std::int32_t>(v);
       for (std::size_t m = 0; m < 2; ++m) {
@@ -175,7 +175,7 @@ void carry(const FoldingSphere& moving, const TriangleMesh& grid, const Position
   const Eigen::VectorXd deformedAreas = geometry::faceAreas(deformed.mesh());
   TriangleMesh sphere = moving.sphere;
   result.arealLog2.resize(sphere.vertexCount());
-  parallelFor(static_cast<std::size_t>(sphere.vertexCount()), kVerticesATask, [&](std::size_t n) {
+  parallelFor(static_cast<std::size_t>(sphere.vertexCount()), [&](std::size_t n) {
     const auto v = static_cast<Eigen::Index>(n);
     const auto place = deformed.locate(moving.sphere.positions.row(v).transpose());
     Point sum = Point::Zero();

@@ -133,7 +133,7 @@ harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor
   using harmonic::Site;
   const Grid& grid = tissue.white.grid;
   Volume<Site> sites(grid);
-  parallelFor(sites.size(), 1 << 16, [&](std::size_t v) {
+  parallelFor(sites.size(), [&](std::size_t v) {
     sites[v] = tissue.white[v] > 0    ? Site::Inner
                : tissue.insulated[v]  ? Site::Insulated
                : tissue.tissue[v] > 0 ? Site::Tissue

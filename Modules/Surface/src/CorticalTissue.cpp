@@ -26,10 +26,8 @@ void requirePresent(const Histogram& histogram, const Labels& labels, const std:
   }
 }
 
-constexpr std::size_t kVoxelGrain = 1 << 18;  // voxels a task
-
 void addTo(Mask& mask, const Mask& other) {
-  parallelFor(mask.size(), kVoxelGrain, [&](std::size_t v) {
+  parallelFor(mask.size(), [&](std::size_t v) {
     mask[v] = static_cast<std::uint8_t>(mask[v] != 0 || other[v] != 0);
   });
 }
@@ -255,7 +253,7 @@ Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level
   }
   const double sign = above <= below ? 1 : -1;
   Volume<float> share(scalars.grid);
-  parallelFor(share.size(), 1 << 18, [&](std::size_t v) {
+  parallelFor(share.size(), [&](std::size_t v) {
     share[v] =
         static_cast<float>(std::clamp(0.5 + sign * (scalars[v] - boundary) / scale, 0.0, 1.0));
   });
@@ -267,7 +265,7 @@ Volume<float> addShares(const Volume<float>& a, const Volume<float>& b) {
     throw InvalidInput("shares: white and grey matter are on different grids");
   }
   Volume<float> sum(a.grid);
-  parallelFor(sum.size(), 1 << 18, [&](std::size_t v) { sum[v] = std::min(1.0F, a[v] + b[v]); });
+  parallelFor(sum.size(), [&](std::size_t v) { sum[v] = std::min(1.0F, a[v] + b[v]); });
   return sum;
 }
 
@@ -326,7 +324,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   }
   masks.greyVoxels = countIn(masks.grey);
   masks.atImageBorder = countOnEdge(masks.white) + countOnEdge(masks.grey);
-  parallelFor(masks.white.size(), kVoxelGrain, [&](std::size_t v) {
+  parallelFor(masks.white.size(), [&](std::size_t v) {
     if (masks.white[v] || masks.grey[v]) masks.insulated[v] = 0;
   });
   return masks;

@@ -323,8 +323,7 @@ class GuardedMesh::FacesOfSlabs {
  public:
   explicit FacesOfSlabs(const GuardedMesh& mesh)
       : ranges_(mesh.boxes_.size()), slabs_((mesh.cellSize_[2] + kLayers - 1) / kLayers) {
-    parallelFor(ranges_.size(), 4096,
-                [&](std::size_t f) { ranges_[f] = mesh.cellsOf(mesh.boxes_[f]); });
+    parallelFor(ranges_.size(), [&](std::size_t f) { ranges_[f] = mesh.cellsOf(mesh.boxes_[f]); });
     for (std::size_t f = 0; f < ranges_.size(); ++f) {
       for (int slab = ranges_[f][2] / kLayers; slab <= ranges_[f][5] / kLayers; ++slab) {
         slabs_[slab].push_back(static_cast<std::int32_t>(f));
@@ -354,7 +353,7 @@ class GuardedMesh::FacesOfSlabs {
 
 void GuardedMesh::fillCells() {
   constexpr std::uint32_t kLanes = BoxLanes::kLanes;
-  parallelFor(faces_.size(), 4096, [&](std::size_t f) {
+  parallelFor(faces_.size(), [&](std::size_t f) {
     const Corners& c = faces_[f];
     boxes_[f] = roomy(boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]}));
   });

@@ -303,7 +303,7 @@ Sight meanOf(Sight first, const Sight& second) {
     const double weight = sight.covered[row] * slope * slope;
     return std::isfinite(weight) && std::isfinite(sight.misses[v][kSide]) ? weight : 0;
   };
-  parallelFor(first.misses.size(), 1024, [&](std::size_t v) {
+  parallelFor(first.misses.size(), [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const double one = weightOf(first, v), two = weightOf(second, v);
     if (!(two > 0)) return;

@@ -16,7 +16,7 @@ Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels) {
   const Label high = *std::ranges::max_element(labels);
   std::vector<std::uint8_t> wanted(static_cast<std::size_t>(high - low) + 1, 0);
   for (const Label label : labels) wanted[label - low] = 1;
-  parallelFor(volume.size(), 1 << 18, [&](std::size_t v) {
+  parallelFor(volume.size(), [&](std::size_t v) {
     const Label value = volume[v];
     if (value >= low && value <= high) mask[v] = wanted[value - low];
   });

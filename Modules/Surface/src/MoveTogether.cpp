@@ -24,7 +24,7 @@ class MarkedCells {
     const double perMm = (kCells - 1) / std::max(size.maxCoeff(), 1e-300);
     for (int a = 0; a < 3; ++a) count_[a] = static_cast<int>(size[a] * perMm) + 1;
     cells_.resize(static_cast<std::size_t>(mesh.vertexCount()));
-    parallelFor(cells_.size(), 4096, [&](std::size_t v) {
+    parallelFor(cells_.size(), [&](std::size_t v) {
       for (int a = 0; a < 3; ++a) {
         const double place = (mesh.positions(static_cast<Eigen::Index>(v), a) - low[a]) * perMm;
         cells_[v][a] = static_cast<std::uint8_t>(std::min(static_cast<int>(place), count_[a] - 1));
@@ -86,7 +86,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
     if (marked[f]) cells.mark(static_cast<Eigen::Index>(f));
   }
   std::vector<std::uint8_t> near(marked.size());
-  parallelFor(marked.size(), 4096,
+  parallelFor(marked.size(),
               [&](std::size_t f) { near[f] = cells.touches(static_cast<Eigen::Index>(f)); });
   std::vector<std::int32_t> faces;
   std::vector<bool> isMarked;
@@ -111,7 +111,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
 /// Marks the faces that have a corner among the marked vertices.
 FaceMarks facesAt(const TriangleMesh& mesh, const std::vector<std::uint8_t>& vertexMarked) {
   FaceMarks marked(static_cast<std::size_t>(mesh.faceCount()));
-  parallelFor(marked.size(), 1 << 14, [&](std::size_t f) {
+  parallelFor(marked.size(), [&](std::size_t f) {
     const auto row = static_cast<Eigen::Index>(f);
     marked[f] = vertexMarked[mesh.faces(row, 0)] | vertexMarked[mesh.faces(row, 1)] |
                 vertexMarked[mesh.faces(row, 2)];
@@ -140,7 +140,7 @@ std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
   std::vector<std::int32_t> listed(static_cast<std::size_t>(mesh.vertexCount()), kStays);
   std::vector<std::uint8_t> changed(listed.size(), 0);
   Positions start(static_cast<Eigen::Index>(vertices.size()), 3);
-  parallelFor(vertices.size(), 1024, [&](std::size_t n) {
+  parallelFor(vertices.size(), [&](std::size_t n) {
     const std::int32_t v = vertices[n];
     listed[v] = static_cast<std::int32_t>(n);
     start.row(static_cast<Eigen::Index>(n)) = mesh.positions.row(v);

@@ -51,7 +51,7 @@ class Thinner {
         faces_(mesh.faceCount()) {
     most_ = 0.5 * std::min(edge, 2 * voxelSize(level.grid));
     std::iota(joined_.begin(), joined_.end(), 0);
-    parallelFor(positions_.size(), 4096, [&](std::size_t v) {
+    parallelFor(positions_.size(), [&](std::size_t v) {
       positions_[v] = mesh.positions.row(static_cast<Eigen::Index>(v));
     });
     for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
@@ -59,7 +59,7 @@ class Thinner {
       for (const std::int32_t v : faces_[f]) rings_[v].add(static_cast<std::int32_t>(f));
     }
     onRim_.resize(positions_.size());
-    parallelFor(onRim_.size(), 4096,
+    parallelFor(onRim_.size(),
                 [&](std::size_t v) { onRim_[v] = endsAt(static_cast<std::int32_t>(v)); });
   }
 
@@ -79,7 +79,7 @@ class Thinner {
   /// For each vertex the one that it was joined to, in the end; itself if none.
   [[nodiscard]] std::vector<std::int32_t> joined() const {
     std::vector<std::int32_t> root(joined_.size());
-    parallelFor(root.size(), 4096, [&](std::size_t v) {
+    parallelFor(root.size(), [&](std::size_t v) {
       std::int32_t r = joined_[v];
       while (joined_[r] != r) r = joined_[r];
       root[v] = r;
@@ -317,7 +317,7 @@ void markBranched(const Faces& faces, std::vector<std::uint8_t>& marked) {
     }
   }
   std::vector<std::uint8_t> branched(marked.size(), 0);
-  parallelFor(sides.size(), 2048,
+  parallelFor(sides.size(),
               [&](std::size_t v) { branched[v] = !sides[v].empty() && !isFan(sides[v]); });
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
     if (!branched[faces(f, 0)] && !branched[faces(f, 1)] && !branched[faces(f, 2)]) continue;
@@ -354,7 +354,7 @@ std::int64_t characteristicOf(const TriangleMesh& mesh) {
 
 TriangleMesh thinned(const TriangleMesh& given, const LevelSet& level, double edge) {
   TriangleMesh mesh = given;
-  parallelFor(static_cast<std::size_t>(mesh.vertexCount()), 4096, [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(mesh.vertexCount()), [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     mesh.positions.row(row) = asStored(given.positions.row(row));
   });

@@ -131,7 +131,7 @@ SheetLevel levelOf(const Ribbon& field) {
   const Annulus& annulus = field.annulus;
   const Grid grid = gridOf(annulus.grid, {annulus.first, annulus.size});
   SheetLevel sheet{LevelSet(grid), Volume<std::uint8_t>(grid, 1), Volume<std::uint8_t>(grid, 0)};
-  parallelFor(sheet.level.size(), 1 << 15, [&](std::size_t p) {
+  parallelFor(sheet.level.size(), [&](std::size_t p) {
     const std::int32_t n = annulus.numberAt[p];
     float value = 0;
     if (n >= 0) {
@@ -181,7 +181,7 @@ void carryOn(SheetLevel& sheet) {
 std::vector<std::uint8_t> bareFaces(const TriangleMesh& mesh, const SheetLevel& sheet) {
   const Grid& grid = sheet.tissue.grid;
   std::vector<std::uint8_t> bare(mesh.faceCount());
-  parallelFor(bare.size(), 1 << 12, [&](std::size_t f) {
+  parallelFor(bare.size(), [&](std::size_t f) {
     const auto face = static_cast<Eigen::Index>(f);
     const Point middle = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
     const Vector index = grid.toIndex(middle);

@@ -398,7 +398,7 @@ Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) 
       }
     });
   }
-  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
+  parallelFor(mask.size(), [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
   return squared;
 }
 

@@ -137,7 +137,7 @@ HeartRoles findRoles(const std::vector<Volume<Label>>& frames, const HeartLabelO
 
 Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles) {
   Volume<Label> heart(frame.grid, kOutside);
-  parallelFor(frame.size(), 1 << 16, [&](std::size_t v) {
+  parallelFor(frame.size(), [&](std::size_t v) {
     const Label label = frame[v];
     if (label == roles.cavity) heart[v] = kCavity;
     if (label == roles.wall) heart[v] = kWall;

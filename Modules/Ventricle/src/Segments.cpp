@@ -54,7 +54,7 @@ Segments segmentsOf(const Volume<Label>& heart, const WallThickness& wall, const
                     const Orientation& orientation) {
   Segments result;
   result.segmentOf = Volume<std::uint8_t>(heart.grid, 0);
-  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+  parallelFor(heart.size(), [&](std::size_t v) {
     if (heart[v] != kWall) return;
     const auto s = heart.grid.subscripts(v);
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));

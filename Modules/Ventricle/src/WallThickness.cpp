@@ -67,7 +67,7 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
   // A valve plane lies across the axis; contacts along the side of the cavity are gaps in the wall.
   if (std::abs(normal.dot(axis.direction)) < 0.5) return;
   const double tolerance = 0.5 * heart.grid.spacing.maxCoeff();
-  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+  parallelFor(heart.size(), [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
@@ -108,7 +108,7 @@ Eigen::Vector2d inSlice(const harmonic::Annulus& annulus, std::int32_t n,
 /// In thick slices the base is the plane across the axis at the cavity's end: what lies beyond it
 /// in slices that it may cut is insulated.
 void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const LongAxis& axis) {
-  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
+  parallelFor(heart.size(), [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
     if (!cut[static_cast<std::size_t>(s[2])]) return;
