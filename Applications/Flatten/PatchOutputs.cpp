@@ -44,7 +44,7 @@ template <class Vector>
 auto atPatch(const Vector& whole, const flattening::Disc& disc) {
   Vector part(static_cast<Eigen::Index>(disc.vertexOrigin.size()));
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
-    part[static_cast<Eigen::Index>(v)] = whole[disc.vertexOrigin[v]];
+    part[v] = whole[disc.vertexOrigin[v]];
   }
   return part;
 }
@@ -54,7 +54,7 @@ Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& dis
                         Eigen::Index vertexCount, double elsewhere) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(vertexCount), count = sum;
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
-    sum[disc.vertexOrigin[v]] += part[static_cast<Eigen::Index>(v)];
+    sum[disc.vertexOrigin[v]] += part[v];
     count[disc.vertexOrigin[v]] += 1;
   }
   return (count.array() > 0).select(sum.cwiseQuotient(count), elsewhere);
@@ -118,11 +118,11 @@ TriangleMesh wholeMap(const TriangleMesh& reference, const flattening::Disc& dis
   TriangleMesh flat{Positions::Zero(reference.vertexCount(), 3), Faces(disc.mesh.faceCount(), 3)};
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
     if (second[v]) continue;
-    flat.positions.row(disc.vertexOrigin[v]).head<2>() = map.row(static_cast<Eigen::Index>(v));
+    flat.positions.row(disc.vertexOrigin[v]).head<2>() = map.row(v);
   }
   Eigen::Index kept = 0;
   for (std::size_t f = 0; f < disc.faceOrigin.size(); ++f) {
-    const auto corners = disc.mesh.faces.row(static_cast<Eigen::Index>(f));
+    const auto corners = disc.mesh.faces.row(f);
     if (second[corners[0]] || second[corners[1]] || second[corners[2]]) continue;
     flat.faces.row(kept++) = reference.faces.row(disc.faceOrigin[f]);
   }

@@ -161,7 +161,7 @@ void harmonise(const GlmSettings& s, const Observations& o, const statistics::De
   for (std::size_t c = 0; c < design.columns.size(); ++c) {
     if (design.columns[c] == "intercept") continue;
     covariates.conservativeResize(Eigen::NoChange, covariates.cols() + 1);
-    covariates.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
+    covariates.rightCols(1) = design.matrix.col(c);
   }
   statistics::combat(values, covariates, levelsIn(s.siteColumn, o));
 }
@@ -203,7 +203,7 @@ Eigen::MatrixXd fit(Context& context, const GlmSettings& s, const Observations& 
 void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, GlmResults& results) {
   if (!o.surface) return;
   const auto stored = [&](std::size_t person, std::span<double> values) {
-    const Eigen::VectorXd row = fitted.row(static_cast<Eigen::Index>(person));
+    const Eigen::VectorXd row = fitted.row(person);
     std::ranges::copy(row, values.begin());
   };
   const statistics::PersonReader reader =

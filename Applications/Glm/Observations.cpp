@@ -152,7 +152,7 @@ void readMask(const GlmSettings& s, Observations& o) {
         labels ? Eigen::VectorXd(io::readVertexLabels(s.masks[h], side.count).keys.cast<double>())
                : io::readVertexMaps(s.masks[h], side.count).front().values;
     for (Eigen::Index v = 0; v < side.count; ++v) {
-      o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;
+      o.mask[side.first + v] = inside[v] != 0;
     }
   }
 }
@@ -219,7 +219,7 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   o.mask.assign(columns.size(), true);
   o.reader = [values = statistics::numbersIn(table, rows, columns)](std::size_t person,
                                                                     std::span<double> out) {
-    const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
+    const Eigen::VectorXd row = values.row(person);
     std::ranges::copy(row, out.begin());
   };
 }

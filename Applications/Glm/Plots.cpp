@@ -18,8 +18,8 @@ std::string reportOf(const Observations& o, std::size_t person) {
 Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contrast& contrast) {
   const statistics::Factor* factor = nullptr;
   for (std::size_t c = 0; c < r.design.columns.size(); ++c) {
-    if (contrast.weights.row(static_cast<Eigen::Index>(c)).isZero()) continue;
-    for (const std::string& name : r.design.terms[static_cast<std::size_t>(r.design.termOf[c])]) {
+    if (contrast.weights.row(c).isZero()) continue;
+    for (const std::string& name : r.design.terms[r.design.termOf[c]]) {
       for (const auto& f : r.design.factors) {
         if (f.name == name && (factor == nullptr || f.levels.empty())) factor = &f;
       }
@@ -58,7 +58,7 @@ std::string pointsSvg(const Observations& o, const Axis& axis, const Eigen::Vect
   const bool named = o.people.size() <= kMostNamed;
   std::string svg, path;
   for (std::size_t i = 0; i < o.people.size(); ++i) {
-    const double value = y[static_cast<Eigen::Index>(i)];
+    const double value = y[i];
     if (!std::isfinite(value) || !std::isfinite(axis.x[i])) continue;
     // Of a level, people are spread in the order of the table.
     const double aside =

@@ -99,7 +99,7 @@ Tissue readTissue(Context& context, const SampleSettings& s) {
   tissue.centres.resize(static_cast<Eigen::Index>(tissue.voxels.voxels.size()), 3);
   for (std::size_t n = 0; n < tissue.voxels.voxels.size(); ++n) {
     const auto [i, j, k] = grid.subscripts(tissue.voxels.voxels[n]);
-    tissue.centres.row(static_cast<Eigen::Index>(n)) = grid.toWorld(Vector(i, j, k)).transpose();
+    tissue.centres.row(n) = grid.toWorld(Vector(i, j, k)).transpose();
   }
   setRegions(context, s, tissue);
   return tissue;

@@ -185,7 +185,7 @@ void leaveOutDegenerate(AnatomicalGrid& grid) {
   Eigen::Index kept = 0;
   for (std::size_t c = 0; c < good.size(); ++c) {
     if (!good[c]) continue;
-    grid.cells.row(kept++) = grid.cells.row(static_cast<Eigen::Index>(c));
+    grid.cells.row(kept++) = grid.cells.row(c);
   }
   grid.degenerate = good.size() - static_cast<std::size_t>(kept);
   grid.cells.conservativeResize(kept, Eigen::NoChange);

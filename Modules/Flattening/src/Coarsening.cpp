@@ -96,8 +96,8 @@ class Shrinking {
     Eigen::Index next = 0;
     for (std::size_t f = 0; f < alive_.size(); ++f) {
       if (!alive_[f]) continue;
-      level.mesh.faces.row(next) = faces_.row(static_cast<Eigen::Index>(f));
-      level.mesh.lengths.row(next++) = lengths_.row(static_cast<Eigen::Index>(f));
+      level.mesh.faces.row(next) = faces_.row(f);
+      level.mesh.lengths.row(next++) = lengths_.row(f);
     }
     if (rimSize_ == 0) return level;
     std::int32_t first = 0;

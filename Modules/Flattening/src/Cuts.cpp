@@ -46,7 +46,7 @@ double meanAreaError(const std::vector<RestFace>& rest, const IntrinsicMesh& mes
     const auto a = flat.row(mesh.faces(f, 0));
     const Eigen::RowVector2d u = flat.row(mesh.faces(f, 1)) - a;
     const Eigen::RowVector2d v = flat.row(mesh.faces(f, 2)) - a;
-    sum += std::abs((u[0] * v[1] - u[1] * v[0]) / (2 * rest[static_cast<std::size_t>(f)].area) - 1);
+    sum += std::abs((u[0] * v[1] - u[1] * v[0]) / (2 * rest[f].area) - 1);
   }
   return sum / static_cast<double>(mesh.faces.rows());
 }
@@ -90,7 +90,7 @@ std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& heig
     for (int k = 0; k < 3; ++k) {
       near[mesh.faces(f, k)].push_back(mesh.faces(f, (k + 1) % 3));
       near[mesh.faces(f, (k + 1) % 3)].push_back(mesh.faces(f, k));
-      areas[mesh.faces(f, k)] += rest[static_cast<std::size_t>(f)].area / 3;
+      areas[mesh.faces(f, k)] += rest[f].area / 3;
     }
   }
   std::vector<std::int32_t> order;

@@ -117,7 +117,7 @@ void keepLargest(Disc& disc) {
   const Eigen::VectorXd faceAreas = geometry::faceAreas(disc.mesh);
   std::vector<double> areas(pieces, 0.0);
   for (std::size_t f = 0; f < parts.size(); ++f) {
-    areas[parts[f]] += faceAreas[static_cast<Eigen::Index>(f)];
+    areas[parts[f]] += faceAreas[f];
   }
   const auto largest = std::ranges::max_element(areas) - areas.begin();
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);

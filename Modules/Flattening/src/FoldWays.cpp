@@ -84,7 +84,7 @@ std::vector<bool> besideHoles(const Disc& disc, Eigen::Index vertexCount) {
     for (const std::int32_t v : hole) barred[v] = true;
   }
   for (auto v = disc.mesh.vertexCount(); v < vertexCount; ++v) {
-    barred[static_cast<std::size_t>(v)] = true;
+    barred[v] = true;
   }
   return barred;
 }

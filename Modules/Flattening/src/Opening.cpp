@@ -22,7 +22,7 @@ std::vector<bool> largestPart(const geometry::MeshTopology& topology, const Eige
   for (std::size_t f = 0; f < part.size(); ++f) {
     if (part[f] < 0) continue;
     if (part[f] >= static_cast<std::int32_t>(sizes.size())) sizes.resize(part[f] + 1, 0);
-    sizes[part[f]] += areas[static_cast<Eigen::Index>(f)];
+    sizes[part[f]] += areas[f];
   }
   std::vector<bool> largest(part.size(), false);
   if (sizes.empty()) return largest;

@@ -314,7 +314,7 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   });
   Faces soundFaces(static_cast<Eigen::Index>(sound.size()), 3);
   for (std::size_t i = 0; i < sound.size(); ++i) {
-    soundFaces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(sound[i]);
+    soundFaces.row(i) = mesh.faces.row(sound[i]);
   }
   const std::int64_t usedCount = std::ranges::count(used, true);
   condition.unusedVertices = condition.vertices - usedCount;
@@ -428,8 +428,7 @@ SubMesh extractFaces(const TriangleMesh& mesh, std::span<const std::int32_t> fac
   }
   part.mesh.positions.resize(static_cast<Eigen::Index>(part.vertexOrigin.size()), 3);
   for (std::size_t v = 0; v < part.vertexOrigin.size(); ++v) {
-    part.mesh.positions.row(static_cast<Eigen::Index>(v)) =
-        mesh.positions.row(part.vertexOrigin[v]);
+    part.mesh.positions.row(v) = mesh.positions.row(part.vertexOrigin[v]);
   }
   part.mesh.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t f = 0; f < faces.size(); ++f) {

@@ -142,7 +142,7 @@ Patch patchOf(const TriangleMesh& mesh, const std::vector<bool>& inPatch) {
   patch.positions.resize(static_cast<Eigen::Index>(patch.vertices.size()), 3);
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
     patch.border.push_back(rim[patch.vertices[i]]);
-    patch.positions.row(static_cast<Eigen::Index>(i)) = mesh.positions.row(patch.vertices[i]);
+    patch.positions.row(i) = mesh.positions.row(patch.vertices[i]);
   }
   return patch;
 }

@@ -188,7 +188,7 @@ LoadedSurface readPly(const std::filesystem::path& path, ByteView bytes) {
           if (axisOf[p] >= 0) {
             builder.coordinates[3 * i + axisOf[p]] = value;
           } else if (vertices) {
-            maps[mapOf[p]].values[static_cast<Eigen::Index>(i)] = value;
+            maps[mapOf[p]].values[i] = value;
           }
           continue;
         }

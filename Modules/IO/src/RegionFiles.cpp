@@ -125,7 +125,7 @@ std::vector<bool> markedByNames(const std::filesystem::path& file,
           joined(regions.table, ", ", [](const LabelEntry& entry) { return entry.name; }));
     }
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
-      if (regions.keys[v] == named->key) marked[static_cast<std::size_t>(v)] = true;
+      if (regions.keys[v] == named->key) marked[v] = true;
     }
   }
   return marked;
@@ -142,7 +142,7 @@ std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
       const Label key = labels.keys[v];
       const bool wanted = keys.empty() ? key != 0 : std::ranges::find(keys, key) != keys.end();
-      if (wanted) marked[static_cast<std::size_t>(v)] = true;
+      if (wanted) marked[v] = true;
     }
   }
   if (std::ranges::find(marked, true) != marked.end()) return marked;

@@ -100,7 +100,7 @@ std::vector<Curve> contoursOfSlice(const Volume<float>& field, int k, double lev
     Curve curve;
     curve.positions.resize(static_cast<Eigen::Index>(points.size()), 2);
     for (std::size_t p = 0; p < points.size(); ++p) {
-      curve.positions.row(static_cast<Eigen::Index>(p)) = points[p].transpose();
+      curve.positions.row(p) = points[p].transpose();
     }
     curves.push_back(std::move(curve));
   }

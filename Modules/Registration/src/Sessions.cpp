@@ -122,8 +122,8 @@ Halfway halfwayOf(const std::array<Volume<float>, 2>& images, const Motion& moti
 double correlationOf(const Halfway& halfway) {
   Eigen::ArrayXd a(static_cast<Eigen::Index>(halfway.head.size())), b(a.size());
   for (Eigen::Index n = 0; n < a.size(); ++n) {
-    a[n] = halfway.a[halfway.head[static_cast<std::size_t>(n)]];
-    b[n] = halfway.b[halfway.head[static_cast<std::size_t>(n)]];
+    a[n] = halfway.a[halfway.head[n]];
+    b[n] = halfway.b[halfway.head[n]];
   }
   a -= a.mean();
   b -= b.mean();

@@ -70,7 +70,7 @@ Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int
   if (!view.focus.empty()) {
     seen.positions.resize(static_cast<Eigen::Index>(view.focus.size()), 3);
     for (std::size_t v = 0; v < view.focus.size(); ++v) {
-      seen.positions.row(static_cast<Eigen::Index>(v)) = mesh.positions.row(view.focus[v]);
+      seen.positions.row(v) = mesh.positions.row(view.focus[v]);
     }
   }
   const TriangleMesh& shown = view.focus.empty() ? mesh : seen;

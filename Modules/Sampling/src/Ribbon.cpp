@@ -40,7 +40,7 @@ Layer layerAt(const TriangleMesh& white, const TriangleMesh& pial, double depth)
   Layer layer{(1 - depth) * white.positions + depth * pial.positions, {}};
   layer.quarter.resize(static_cast<std::size_t>(white.faceCount()));
   parallelFor(layer.quarter.size(), [&](std::size_t f) {
-    const auto face = white.faces.row(static_cast<Eigen::Index>(f));
+    const auto face = white.faces.row(f);
     const auto corner = [&](int k) -> Point { return layer.corners.row(face[k]).transpose(); };
     const double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
     double thickness = kThinnest;
@@ -84,7 +84,7 @@ std::vector<float> atVertices(const FaceSums& sums, const TriangleMesh& mesh) {
   parallelFor(frames, 1, [&](std::size_t frame) {
     std::vector<double> value(vertices), volume(vertices), all(vertices);
     for (std::size_t f = 0; f < faces; ++f) {
-      for (const std::int32_t v : mesh.faces.row(static_cast<Eigen::Index>(f))) {
+      for (const std::int32_t v : mesh.faces.row(f)) {
         value[v] += sums.value[frame * faces + f];
         volume[v] += sums.volume[frame * faces + f];
         all[v] += sums.all[f];

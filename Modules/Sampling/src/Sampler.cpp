@@ -72,7 +72,7 @@ Sampler::Sampler(const Grid& grid, const Positions& points, Interpolation interp
     mask_ = mask->data;
   }
   parallelFor(corners_.size(), [&](std::size_t p) {
-    const Vector index = grid_.toIndex(points.row(static_cast<Eigen::Index>(p)).transpose());
+    const Vector index = grid_.toIndex(points.row(p).transpose());
     Corner& corner = corners_[p];
     corner.inside = index.allFinite();
     for (int axis = 0; axis < 3; ++axis) {

@@ -116,7 +116,7 @@ Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Po
       const std::int32_t v = fine.faces(f, k), u = fine.faces(f, (k + 1) % 3);
       for (const auto& [a, b] : {std::pair{v, u}, std::pair{u, v}}) {
         if (a < coarse.vertexCount() || b >= coarse.vertexCount()) continue;
-        auto& pair = ends[static_cast<std::size_t>(a)];
+        auto& pair = ends[a];
         if (pair[0] < 0 || pair[0] == b) {
           pair[0] = b;
         } else {
@@ -126,7 +126,7 @@ Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Po
     }
   }
   for (Eigen::Index v = coarse.vertexCount(); v < fine.vertexCount(); ++v) {
-    const auto& [a, b] = ends[static_cast<std::size_t>(v)];
+    const auto& [a, b] = ends[v];
     result.row(v) = (places.row(a) + places.row(b)).normalized();
   }
   return result;

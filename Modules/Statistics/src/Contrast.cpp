@@ -102,7 +102,7 @@ class Names {
     const auto p = static_cast<Eigen::Index>(design_.columns.size());
     Eigen::MatrixXd weights(p, 0);
     for (Eigen::Index c = 0; c < p; ++c) {
-      if (design_.termOf[static_cast<std::size_t>(c)] != term) continue;
+      if (design_.termOf[c] != term) continue;
       weights.conservativeResize(p, weights.cols() + 1);
       weights.rightCols(1) = Eigen::VectorXd::Unit(p, c);
     }

@@ -38,12 +38,12 @@ class Profile {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(count);
     std::vector<int> sizes(static_cast<std::size_t>(count), 0);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const int g = groups[static_cast<std::size_t>(i)];
+      const int g = groups[i];
       rows.col(g) += x.row(i).transpose();
       sums[g] += residuals[i];
-      ++sizes[static_cast<std::size_t>(g)];
+      ++sizes[g];
     }
-    for (int g = 0; g < count; ++g) add(sizes[static_cast<std::size_t>(g)], rows.col(g), sums[g]);
+    for (int g = 0; g < count; ++g) add(sizes[g], rows.col(g), sums[g]);
   }
 
   /// At a ratio: -2 log restricted likelihood, up to a constant; fills the fit.

@@ -42,7 +42,7 @@ Eigen::VectorXd BorderChooser::choose(int rounds) const {
       double mean = 0;
       const auto& ring = topology_.vertexVertices[v];
       for (const std::int32_t w : ring) mean += chosen[w] / static_cast<double>(ring.size());
-      next[static_cast<Eigen::Index>(v)] = has_[v] ? bestOf(v, mean) : 0.0;
+      next[v] = has_[v] ? bestOf(v, mean) : 0.0;
     });
     chosen = std::move(next);
   }

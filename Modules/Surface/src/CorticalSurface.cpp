@@ -336,7 +336,7 @@ void noteHeldBack(const GrowingColumns& ribbon, const LevelSet& outer, const Gro
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
     double missing = growth.missing(v);
     if (missing <= least) continue;
-    const Point at = result.pial.positions.row(static_cast<Eigen::Index>(v));
+    const Point at = result.pial.positions.row(v);
     const Trajectory& path = ribbon.paths[v];
     if (path.end == TrajectoryEnd::Outer) {
       const LevelSample border = sample(outer, at);

@@ -99,7 +99,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
   part.positions = mesh.positions;
   part.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t n = 0; n < faces.size(); ++n) {
-    part.faces.row(static_cast<Eigen::Index>(n)) = mesh.faces.row(faces[n]);
+    part.faces.row(n) = mesh.faces.row(faces[n]);
   }
   std::vector<geometry::FacePair> pairs = geometry::findSelfIntersections(part, isMarked);
   for (geometry::FacePair& pair : pairs) {
@@ -143,7 +143,7 @@ std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
   parallelFor(vertices.size(), [&](std::size_t n) {
     const std::int32_t v = vertices[n];
     listed[v] = static_cast<std::int32_t>(n);
-    start.row(static_cast<Eigen::Index>(n)) = mesh.positions.row(v);
+    start.row(n) = mesh.positions.row(v);
     const Point goal = asStored(to(v, 0));
     changed[v] = goal != Point(mesh.positions.row(v));
     mesh.positions.row(v) = goal;

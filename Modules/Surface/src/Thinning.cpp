@@ -51,9 +51,7 @@ class Thinner {
         faces_(mesh.faceCount()) {
     most_ = 0.5 * std::min(edge, 2 * voxelSize(level.grid));
     std::iota(joined_.begin(), joined_.end(), 0);
-    parallelFor(positions_.size(), [&](std::size_t v) {
-      positions_[v] = mesh.positions.row(static_cast<Eigen::Index>(v));
-    });
+    parallelFor(positions_.size(), [&](std::size_t v) { positions_[v] = mesh.positions.row(v); });
     for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
       faces_[f] = {mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)};
       for (const std::int32_t v : faces_[f]) rings_[v].add(static_cast<std::int32_t>(f));
@@ -244,7 +242,7 @@ class Joined {
       : mesh_(mesh), root_(thinner.joined()), positions_(mesh.positions) {
     for (std::size_t v = 0; v < root_.size(); ++v) {
       if (root_[v] == static_cast<std::int32_t>(v)) {
-        positions_.row(static_cast<Eigen::Index>(v)) = thinner.positions()[v];
+        positions_.row(v) = thinner.positions()[v];
       }
     }
     takeFaces();
@@ -338,8 +336,7 @@ TriangleMesh compacted(const TriangleMesh& mesh) {
   TriangleMesh found;
   found.positions.resize(count, 3);
   for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] >= 0)
-      found.positions.row(number[v]) = mesh.positions.row(static_cast<Eigen::Index>(v));
+    if (number[v] >= 0) found.positions.row(number[v]) = mesh.positions.row(v);
   }
   found.faces = mesh.faces.unaryExpr([&](std::int32_t v) { return number[v]; });
   return found;

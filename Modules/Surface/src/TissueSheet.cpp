@@ -238,7 +238,7 @@ Ways traceWays(const RibbonPaths& ribbon, const TriangleMesh& sheet) {
   ways.inward.resize(sheet.vertexCount());
   ways.outward.resize(sheet.vertexCount());
   parallelFor(ways.inward.size(), 256, [&](std::size_t v) {
-    const Point start = sheet.positions.row(static_cast<Eigen::Index>(v));
+    const Point start = sheet.positions.row(v);
     ways.inward[v] = ribbon.from(start, 0);
     ways.outward[v] = ribbon.from(start, 1);
     if (ways.inward[v].end == TrajectoryEnd::NoRibbon) ways.outward[v] = ways.inward[v];
@@ -326,7 +326,7 @@ Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, doub
     double missing = growth.missing(v);
     if (missing <= least) continue;
     // What has waited on its trajectory may have come to the border by sliding.
-    missing = std::min(missing, shortfall(grown.mesh.positions.row(static_cast<Eigen::Index>(v))));
+    missing = std::min(missing, shortfall(grown.mesh.positions.row(v)));
     if (missing <= least) continue;
     ++grown.heldBack;
     grown.missing += missing;
@@ -465,8 +465,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   facts.interpolated = interpolateWays(sheet, ways, facts.known);
   made.thickness.resize(sheet.vertexCount());
   for (std::size_t v = 0; v < ways.inward.size(); ++v) {
-    made.thickness[static_cast<Eigen::Index>(v)] =
-        ways.inward[v].length() + ways.outward[v].length();
+    made.thickness[v] = ways.inward[v].length() + ways.outward[v].length();
   }
   made.seconds.trajectories = secondsSince(last);
   monitor.progress(0.7, "growing the surfaces");

@@ -24,7 +24,7 @@ constexpr double kLeastShare = 0.1;
 /// Middle of the cavity at the height of a voxel.
 Point middleAt(const WallThickness& wall, const LongAxis& axis, const Grid& grid, const Point& x,
                int k) {
-  const Slice& slice = wall.slices[static_cast<std::size_t>(k)];
+  const Slice& slice = wall.slices[k];
   if (!wall.bySlice || !slice.whole()) return axis.foot(x);
   const Eigen::Vector2d index = slice.centre.cwiseQuotient(grid.spacing.head<2>());
   return grid.toWorld(Vector(index[0], index[1], k));

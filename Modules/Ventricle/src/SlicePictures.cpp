@@ -308,8 +308,7 @@ Canvas drawSlices(const Beat& beat, std::size_t f, const Volume<float>* image,
     view.corner = Point2(kTile * static_cast<double>(q % kColumns),
                          kHead + (kTile + kCaption) * static_cast<double>(q / kColumns));
     const Eigen::Vector2d centre =
-        placed.measures->slices[static_cast<std::size_t>(k)].centre.cwiseQuotient(
-            grid.spacing.head<2>());
+        placed.measures->slices[k].centre.cwiseQuotient(grid.spacing.head<2>());
     view.middle = grid.toWorld(Vector(centre[0], centre[1], k));
     drawSlice(canvas, view, beat, frame, k, tracer, image, grey);
     const Point2 below = view.corner + Point2(0.5 * kTile, kTile + 12);

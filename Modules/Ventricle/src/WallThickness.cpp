@@ -111,7 +111,7 @@ void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const Lo
   parallelFor(heart.size(), [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
-    if (!cut[static_cast<std::size_t>(s[2])]) return;
+    if (!cut[s[2]]) return;
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
     if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
   });
@@ -162,7 +162,7 @@ void leaveOutAtBase(WallThickness& wall, const LongAxis& axis) {
   const std::vector<bool> cut = cutSlices(wall.slices, grid, axis);
   parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
     const auto number = static_cast<std::int32_t>(n);
-    if (!cut[static_cast<std::size_t>(wall.annulus.index(number)[2])]) return;
+    if (!cut[wall.annulus.index(number)[2]]) return;
     const Point x = wall.annulus.world(number);
     const Point inner = x + wall.correspondence.innerPoint[n].cast<double>();
     const Point outer = x + wall.correspondence.outerPoint[n].cast<double>();
@@ -209,8 +209,7 @@ std::vector<std::vector<Point>> ringEnds(const WallThickness& wall, const Volume
       auto q = s;
       q[d / 2] += d % 2 ? 1 : -1;
       if (!grid.contains(q[0], q[1], q[2]) || marked(q[0], q[1], q[2]) != kBeyondBase) continue;
-      ends[static_cast<std::size_t>(s[2])].push_back(
-          grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
+      ends[s[2]].push_back(grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
     }
   }
   return ends;

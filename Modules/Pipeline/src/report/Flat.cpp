@@ -74,7 +74,7 @@ Vector sightOf(const FlatPatch& patch) {
 Eigen::VectorXd onPatch(const FlatPatch& patch, const Eigen::VectorXd& whole) {
   Eigen::VectorXd part(static_cast<Eigen::Index>(patch.vertices.size()));
   for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
-    part[static_cast<Eigen::Index>(n)] = whole[patch.vertices[n]];
+    part[n] = whole[patch.vertices[n]];
   }
   return part;
 }
@@ -184,7 +184,7 @@ void chartDistortion(ResultFolder& results, const StepFolder& step) {
   for (const io::VertexMap& map : io::readVertexMaps(step.folder / "distortion.shape.gii")) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(vertices.size()));
     for (std::size_t n = 0; n < vertices.size(); ++n) {
-      values[static_cast<Eigen::Index>(n)] = map.values[vertices[n]];
+      values[n] = map.values[vertices[n]];
     }
     const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
     results.content().charts.push_back(

@@ -195,7 +195,7 @@ PatchPaint paintOf(const Unfolded& unfolded, const GivenMap& map) {
   given.paint.values = map.values;
   Eigen::VectorXd onPatch(static_cast<Eigen::Index>(unfolded.region.size()));
   for (std::size_t n = 0; n < unfolded.region.size(); ++n) {
-    onPatch[static_cast<Eigen::Index>(n)] = map.values[unfolded.region[n]];
+    onPatch[n] = map.values[unfolded.region[n]];
   }
   given.paint.scale = report::scaleFor(onPatch, map.name, map.unit);
   return given;
