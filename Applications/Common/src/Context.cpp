@@ -179,7 +179,7 @@ void Context::warn(const std::string& message) {
 
 bool Context::given(std::string_view name) const {
   if (name == "dry-run") return state_->run.common.dryRun;  // of steps, too
-  return state_->run.given.count(std::string(name)) > 0;
+  return state_->run.given.contains(std::string(name));
 }
 int Context::threads() const {
   return state_->record.threads;

@@ -28,7 +28,7 @@ using provenance::Json;
 std::vector<const Command*> kindsOf(const std::string& verb) {
   std::vector<const Command*> kinds;
   for (const Command& command : allCommands()) {
-    if (command.name().rfind(verb + " ", 0) == 0) kinds.push_back(&command);
+    if (command.name().starts_with(verb + " ")) kinds.push_back(&command);
   }
   return kinds;
 }

@@ -106,7 +106,7 @@ std::string Meeting::meshesOf(const File& one, const File& other) {
   }
   if (!isVertexData(one.parameter) || one.surfaces.empty() || other.surfaces.empty()) return {};
   const bool shared = std::ranges::any_of(
-      one.surfaces, [&](const auto& hash) { return other.surfaces.count(hash) > 0; });
+      one.surfaces, [&](const auto& hash) { return other.surfaces.contains(hash); });
   if (shared) return {};
   return one.name + " was not made for the mesh of " + other.name + ", as their records tell";
 }

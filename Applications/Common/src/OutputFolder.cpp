@@ -99,7 +99,7 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
     if (fault) cannot("the output folder cannot be read", folder_, fault.message());
     for (const auto& entry : entries) {
       const std::string name = entry.path().filename().string();
-      if (name.rfind(".explica-", 0) == 0) continue;  // left by a run that was killed
+      if (name.starts_with(".explica-")) continue;  // left by a run that was killed
       throw UsageError(folder_.string() + ": the output folder is not empty (it holds " + name +
                        "); give another --out, or --force to replace what is there");
     }

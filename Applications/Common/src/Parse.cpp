@@ -36,11 +36,11 @@ std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& wor
     if (word.size() < 2 || word[0] != '-') return false;
     const char next = word[1];
     return std::isdigit(static_cast<unsigned char>(next)) || next == '.' ||
-           word.rfind("-inf", 0) == 0;
+           word.starts_with("-inf");
   };
   std::vector<std::string> bound;
   for (const auto& word : words) {
-    const bool afterOption = !bound.empty() && bound.back().rfind("--", 0) == 0 &&
+    const bool afterOption = !bound.empty() && bound.back().starts_with("--") &&
                              bound.back().size() > 2 && bound.back().find('=') == std::string::npos;
     if (afterOption && startsNegative(word)) {
       bound.back() += "=" + word;
@@ -165,7 +165,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     const auto& option = all[i]->option;
     if (option.isFlag()) {
       std::string names = "--" + option.name;
-      if (option.name.rfind("no-", 0) != 0) names += ",!--no-" + option.name;
+      if (!option.name.starts_with("no-")) names += ",!--no-" + option.name;
       binding.handle = parser.add_flag(names, binding.flagCount);
       continue;
     }
@@ -190,7 +190,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     }
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
-    if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
+    if (!word.starts_with('-')) throw UsageError("'" + extra + "' was not expected");
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }

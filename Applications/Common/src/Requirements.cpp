@@ -16,7 +16,7 @@ namespace {
 bool holds(const Declaration& declaration, const std::set<std::string>& given,
            const std::string& condition) {
   const auto equals = condition.find('=');
-  if (equals == std::string::npos) return given.count(condition) > 0;
+  if (equals == std::string::npos) return given.contains(condition);
   const Parameter* parameter = declaration.find(condition.substr(0, equals));
   return parameter && parameter->option.text() == condition.substr(equals + 1);
 }

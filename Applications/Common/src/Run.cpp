@@ -29,7 +29,7 @@ using provenance::Json;
 
 /// Result keys that start so are times: they differ between equal runs.
 bool isTime(const std::string& key) {
-  return key.rfind("seconds", 0) == 0;
+  return key.starts_with("seconds");
 }
 
 /// Hashes every file that a declared input names, so that a missing one is reported before any

@@ -149,7 +149,7 @@ Json thicknessValues(const fs::path& file, const NamedLabels& labels, bool left)
       return json;
   }
   const auto absent = [&](int label) {  // a volume yet to be made will hold all
-    return !labels.found.empty() && labels.found.count(label) == 0;
+    return !labels.found.empty() && !labels.found.contains(label);
   };
   inside.erase(std::remove_if(inside.begin(), inside.end(), absent), inside.end());
   insulated.erase(std::remove_if(insulated.begin(), insulated.end(), absent), insulated.end());
@@ -168,7 +168,7 @@ Json surfaceValues(const fs::path& file, const NamedLabels& labels, bool left) {
       json["grey-label"] = {1};
       break;
     case Naming::FreeSurfer:
-      if (labels.found.count(left ? kLeftCortex : kRightCortex) == 0 ||
+      if (!labels.found.contains(left ? kLeftCortex : kRightCortex) ||
           cortexOf(labels, left).size() > 1) {
         json["preset"] = "aseg";
         json["grey-label"] = cortexOf(labels, left);

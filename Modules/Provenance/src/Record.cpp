@@ -30,7 +30,7 @@ std::string nameOfPath(const std::string& word) {
   const auto slash = word.find_last_of('/');
   if (slash == std::string::npos) return word;
   const std::string name = word.substr(slash + 1);
-  const bool rooted = word[0] == '/' || word[0] == '~' || word.rfind("../", 0) == 0;
+  const bool rooted = word[0] == '/' || word[0] == '~' || word.starts_with("../");
   return rooted || name.find('.') != std::string::npos ? name : word;
 }
 
@@ -69,7 +69,7 @@ std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, cons
   const std::string beginning = name.substr(0, end);
   std::vector<std::filesystem::path> candidates;
   for (const auto& run : std::filesystem::directory_iterator(runs, fault)) {
-    if (run.path().filename().string().rfind(beginning, 0) != 0) continue;
+    if (!run.path().filename().string().starts_with(beginning)) continue;
     for (const auto& step : std::filesystem::directory_iterator(run.path(), fault)) {
       candidates.push_back(step.path() / kRecordName);
     }

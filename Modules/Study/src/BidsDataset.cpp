@@ -87,7 +87,7 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
     }
   }
   for (std::string label : labels) {
-    if (label.rfind("sub-", 0) == 0) label = label.substr(4);
+    if (label.starts_with("sub-")) label = label.substr(4);
     if (std::ranges::none_of(participants,
                              [&](const Participant& p) { return p.label == label; })) {
       throw InvalidInput(dataset.string() + ": has no participant sub-" + label);

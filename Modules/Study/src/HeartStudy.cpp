@@ -26,7 +26,7 @@ constexpr int kDeepest = 4;  // folders between a person and the label volumes
 
 bool isOther(const std::string& name) {
   static const std::set<std::string> others = {"code", "derivatives", "sourcedata", "stimuli"};
-  return name.starts_with(".") || others.count(name) > 0;
+  return name.starts_with(".") || others.contains(name);
 }
 
 std::vector<fs::path> foldersIn(const fs::path& parent) {

@@ -26,7 +26,7 @@ const std::vector<std::vector<std::string>> kAlternatives = {
     {"unfold.center", "unfold.vertex", "unfold.label", "unfold.region"}};
 
 std::string withoutPrefix(const std::string& label) {
-  return label.rfind("sub-", 0) == 0 ? label.substr(4) : label;
+  return label.starts_with("sub-") ? label.substr(4) : label;
 }
 
 /// Puts `more` on top; a null takes an option back to its default.

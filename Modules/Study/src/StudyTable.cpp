@@ -84,7 +84,7 @@ std::string textOf(const Json& value) {
 void addSummary(StudyRow& row, const std::string& step, const Json& summary) {
   static const std::set<std::string> left = {"command", "peak_memory_bytes", "warnings"};
   for (const auto& [key, value] : summary.items()) {
-    if (value.is_structured() || left.count(key) || key.rfind("seconds", 0) == 0) continue;
+    if (value.is_structured() || left.count(key) || key.starts_with("seconds")) continue;
     row.values[step + "." + key] = textOf(value);
   }
 }

@@ -55,7 +55,7 @@ void listOwnNumbers(const StepFolder& step, report::ReportFindings& findings) {
   constexpr std::size_t kMost = 12;  // rows
   for (const auto& [key, value] : step.summary.items()) {
     if (findings.rows.size() >= kMost) return;
-    if (!value.is_number() || key.rfind("seconds", 0) == 0 || key == "peak_memory_bytes") continue;
+    if (!value.is_number() || key.starts_with("seconds") || key == "peak_memory_bytes") continue;
     findings.rows.push_back({inWords(key), "", {readable(value)}});
   }
 }

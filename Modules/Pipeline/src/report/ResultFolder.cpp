@@ -34,8 +34,8 @@ std::string StepFolder::side() const {
   if (said.empty() && options.contains("hemisphere") && options["hemisphere"].is_string()) {
     said = options["hemisphere"].get<std::string>();
   }
-  const bool left = said.rfind("CortexLeft", 0) == 0 || said == "L" || said == "left";
-  const bool right = said.rfind("CortexRight", 0) == 0 || said == "R" || said == "right";
+  const bool left = said.starts_with("CortexLeft") || said == "L" || said == "left";
+  const bool right = said.starts_with("CortexRight") || said == "R" || said == "right";
   if (left != right) return left ? "left" : "right";
   // A run on both sides names the folders of its steps by side.
   const std::string ending = name.size() > 2 ? name.substr(name.size() - 2) : "";

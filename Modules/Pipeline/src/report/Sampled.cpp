@@ -69,7 +69,7 @@ io::VertexMap meanOf(const std::vector<io::VertexMap>& maps) {
 
 /// Of the maps of depths the first, middle and last; of frames their mean; of others all.
 std::vector<io::VertexMap> fewOf(std::vector<io::VertexMap> maps) {
-  if (maps.size() > 1 && maps.front().name.rfind("frame", 0) == 0) return {meanOf(maps)};
+  if (maps.size() > 1 && maps.front().name.starts_with("frame")) return {meanOf(maps)};
   if (maps.size() <= 3) return maps;
   std::vector<io::VertexMap> few;
   for (const std::size_t n : {std::size_t{0}, (maps.size() - 1) / 2, maps.size() - 1}) {
