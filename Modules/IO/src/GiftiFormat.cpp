@@ -296,9 +296,9 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
 
 std::string opening(std::size_t arrays, const Metadata& metadata, const std::string& table) {
   std::string text =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE GIFTI SYSTEM "
-      "\"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n<GIFTI "
-      "Version=\"1.0\" NumberOfDataArrays=\"" +
+      R"(<?xml version="1.0" encoding="UTF-8"?>
+<!DOCTYPE GIFTI SYSTEM "http://www.nitrc.org/frs/download.php/115/gifti.dtd">
+<GIFTI Version="1.0" NumberOfDataArrays=")" +
       std::to_string(arrays) + "\">\n";
   appendMetadata(text, metadata);
   return text + table;
