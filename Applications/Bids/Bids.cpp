@@ -25,7 +25,6 @@
 #include "KeptRun.h"
 #include "StudyInput.h"
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 

@@ -22,7 +22,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 
 namespace explica::app {
 namespace {

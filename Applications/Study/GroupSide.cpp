@@ -15,8 +15,6 @@
 #include "Explica/Report/Figure.h"
 #include "GroupParts.h"
 
-#include <algorithm>
-
 namespace explica::app {
 namespace {
 

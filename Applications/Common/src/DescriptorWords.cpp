@@ -8,7 +8,6 @@
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace explica::app {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "Explica/Core/DisjointSets.h"
 
-#include <algorithm>
 #include <map>
 #include <utility>
 

@@ -5,7 +5,6 @@
 #include "Explica/Harmonic/Interpolant.h"
 #include "Stencil.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>

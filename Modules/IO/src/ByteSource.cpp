@@ -13,7 +13,6 @@
 
 #include <array>
 #include <cerrno>
-#include <system_error>
 
 namespace explica::io {
 namespace {

@@ -10,7 +10,6 @@
 #include "Masks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 

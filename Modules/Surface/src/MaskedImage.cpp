@@ -6,7 +6,6 @@
 #include "PathProfile.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>

@@ -7,7 +7,6 @@
 
 #include "Explica/Core/Errors.h"
 
-#include <algorithm>
 #include <optional>
 
 namespace explica::python {

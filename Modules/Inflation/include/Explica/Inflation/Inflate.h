@@ -8,7 +8,6 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Unfolding/Unfold.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
