@@ -21,7 +21,7 @@ struct VtkCell {
 
 VtkCell cellOf(CellKind kind) {
   constexpr std::array<VtkCell, 3> kCells = {{{3, 2}, {9, 4}, {12, 8}}};  // as CellKind has them
-  return kCells[kind];
+  return kCells[static_cast<std::size_t>(kind)];
 }
 
 void writeDocument(const std::filesystem::path& path, const std::string& type,

@@ -26,7 +26,7 @@ void writeRunState(const std::filesystem::path& file, const std::vector<StepNote
   for (const StepNote& step : steps) {
     all.push_back({{"name", step.name},
                    {"command", step.command},
-                   {"state", kWords[step.state]},
+                   {"state", kWords[static_cast<std::size_t>(step.state)]},
                    {"message", step.message}});
   }
   provenance::writeJson(file, provenance::Json{{"steps", all}});

@@ -179,8 +179,8 @@ LongAxis withEndsOf(LongAxis axis, const Volume<Label>& heart) {
   const auto count = static_cast<double>(heights.size());
   const double half =
       0.5 * heart.grid.spacing[2] * std::abs(heart.grid.direction.col(2).dot(axis.direction));
-  axis.base = heights[kBaseShare * count] - gapAtBase(axis, heart);
-  axis.apex = heights[(1 - kEndShare) * count] + half;
+  axis.base = heights[static_cast<std::size_t>(kBaseShare * count)] - gapAtBase(axis, heart);
+  axis.apex = heights[static_cast<std::size_t>((1 - kEndShare) * count)] + half;
   return axis;
 }
 

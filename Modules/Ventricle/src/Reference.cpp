@@ -127,7 +127,7 @@ const std::vector<Reference>& references() {
 }
 
 const Reference& referenceOf(Quantity quantity) {
-  return references()[quantity];
+  return references()[static_cast<std::size_t>(quantity)];
 }
 
 double valueOf(const Beat& beat, Quantity quantity) {
