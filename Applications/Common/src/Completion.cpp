@@ -36,9 +36,7 @@ Verbs verbsOf(const Json& commands) {
 /// What may follow an option, as the shell function's `values`: words, or -f files, or -d folders.
 std::string bashValues(const Json& p) {
   if (!p["choices"].empty()) {
-    std::string words;
-    for (const Json& choice : p["choices"]) words += " " + word(choice);
-    return "-W" + words;
+    return "-W " + joined(p["choices"], " ", word);
   }
   if (isFolder(p) || p["name"] == "out") return "-d";
   const bool textOrFile = isFile(p) || (p["type"] == "text" && p["placeholder"] != "N");
@@ -163,10 +161,7 @@ std::string zshCompletionOf(const Json& commands) {
       if (!isFlag(p)) {
         std::string action = "_files";
         if (!p["choices"].empty()) {
-          action = "(";
-          for (const Json& choice : p["choices"])
-            action += (action.size() > 1 ? " " : "") + word(choice);
-          action += ")";
+          action = "(" + joined(p["choices"], " ", word) + ")";
         } else if (p["file"].is_null() && p["name"] != "out" && p["name"] != "config" &&
                    p["name"] != "log") {
           action = " ";

@@ -28,6 +28,11 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
+std::string upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
 bool isFile(const Json& p) {
   return !p["file"].is_null() && p["file"] != "folder";
 }

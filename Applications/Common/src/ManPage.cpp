@@ -3,8 +3,7 @@
 
 #include "DescriptorWords.h"
 
-#include <algorithm>
-#include <cctype>
+#include "Explica/Core/Text.h"
 
 namespace explica::app {
 namespace {
@@ -15,14 +14,22 @@ std::string roff(std::string text) {
   return text;
 }
 
+/// A term and what it means; `font` is roff's request for the term.
+std::string entry(const std::string& font, const std::string& term, const std::string& meaning) {
+  return ".TP\n" + font + " " + term + "\n" + roff(meaning) + "\n";
+}
+
+std::string exitStatus() {
+  std::string text = ".SH \"EXIT STATUS\"\n";
+  for (const auto& [code, meaning] : kExitCodes) text += entry(".B", std::to_string(code), meaning);
+  return text;
+}
+
 }  // namespace
 
 std::string manPageOf(const Json& command, const std::string& version) {
   const std::string name = "explica-" + replaced(word(command["command"]), " ", "-");
-  std::string title = name;
-  std::ranges::transform(title, title.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  std::string text = ".TH " + roff(title) + " 1 \"\" \"Explica " + roff(version) +
+  std::string text = ".TH " + roff(upper(name)) + " 1 \"\" \"Explica " + roff(version) +
                      "\" \"User Commands\"\n.ad l\n.SH NAME\n" + roff(name) + " \\- " +
                      roff(word(command["synopsis"])) + "\n.SH SYNOPSIS\n.B " +
                      roff(word(command["usage"])) + "\n";
@@ -30,10 +37,7 @@ std::string manPageOf(const Json& command, const std::string& version) {
     text += ".SH DESCRIPTION\n" + roff(word(command["description"])) + "\n";
   }
   for (const std::string& category : categoriesOf(command)) {
-    std::string heading = category;
-    std::ranges::transform(heading, heading.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    text += ".SH \"" + roff(heading) + "\"\n";
+    text += ".SH \"" + roff(upper(category)) + "\"\n";
     for (const Json& p : command["parameters"]) {
       const std::string own = p["positional"] ? "Arguments" : word(p["category"]);
       if (own != category) continue;
@@ -42,33 +46,26 @@ std::string manPageOf(const Json& command, const std::string& version) {
               ? word(p["name"])
               : "--" + word(p["name"]) + (isFlag(p) ? "" : " " + word(p["placeholder"]));
       // A list of choices may break after each of them.
-      text +=
-          ".TP\n.B " + replaced(roff(left), "|", "|\\:") + "\n" + roff(helpWithDefault(p)) + "\n";
+      text += entry(".B", replaced(roff(left), "|", "|\\:"), helpWithDefault(p));
     }
   }
   if (command["writes_folder"]) {
     text += ".SH FILES\n";
     for (const Json& slot : command["outputs"]) {
-      text += ".TP\n.I " + roff(word(slot["pattern"])) + "\n" + roff(word(slot["help"])) + "\n";
+      text += entry(".I", roff(word(slot["pattern"])), word(slot["help"]));
     }
   }
-  text += ".SH \"EXIT STATUS\"\n";
-  for (const auto& [code, meaning] : kExitCodes) {
-    text += ".TP\n.B " + std::to_string(code) + "\n" + roff(meaning) + "\n";
-  }
+  text += exitStatus();
   if (!command["examples"].empty()) {
     text += ".SH EXAMPLES\n";
     for (const Json& e : command["examples"]) {
-      text += ".TP\n.B " + roff(word(e["command"])) + "\n" + roff(word(e["what"])) + "\n";
+      text += entry(".B", roff(word(e["command"])), word(e["what"]));
     }
   }
   if (!command["references"].empty()) {
     text += ".SH REFERENCES\n";
-    std::string between;
-    for (const Json& reference : command["references"]) {
-      text += between + roff(word(reference)) + "\n";
-      between = ".PP\n";
-    }
+    text += joined(command["references"], ".PP\n",
+                   [](const Json& reference) { return roff(word(reference)) + "\n"; });
   }
   return text;
 }
@@ -79,14 +76,10 @@ std::string overviewManPageOf(const Json& commands, const std::string& version) 
                      "cortex or the heart wall, and unfolds it\n"
                      ".SH SYNOPSIS\n.B explica\n.I COMMAND\n[arguments] [options]\n.SH COMMANDS\n";
   for (const Json& command : commands) {
-    text += ".TP\n.BR explica\\-" + roff(replaced(word(command["command"]), " ", "-")) + " (1)\n" +
-            roff(word(command["synopsis"])) + "\n";
+    const std::string name = roff(replaced(word(command["command"]), " ", "-"));
+    text += entry(".BR", "explica\\-" + name + " (1)", word(command["synopsis"]));
   }
-  text += ".SH \"EXIT STATUS\"\n";
-  for (const auto& [code, meaning] : kExitCodes) {
-    text += ".TP\n.B " + std::to_string(code) + "\n" + roff(meaning) + "\n";
-  }
-  return text;
+  return text + exitStatus();
 }
 
 }  // namespace explica::app
