@@ -111,7 +111,7 @@ class Coder {
                          [&](const std::string& c) { return c != column; });
     if (!rest.empty()) {
       return std::ranges::any_of(formula_.terms, [&](const Term& other) {
-        return std::ranges::is_permutation(rest, other.begin(), other.end());
+        return std::ranges::is_permutation(rest, other);
       });
     }
     if (formula_.intercept) return true;

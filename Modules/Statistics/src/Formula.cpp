@@ -135,7 +135,7 @@ class Reader {
 
   void addTerm(const Term& term) {
     const auto same = [&](const Term& other) {
-      return std::ranges::is_permutation(term, other.begin(), other.end());
+      return std::ranges::is_permutation(term, other);
     };
     if (std::ranges::none_of(formula_.terms, same)) {
       formula_.terms.push_back(term);
