@@ -25,6 +25,7 @@
 #include "KeptRun.h"
 #include "StudyInput.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 

@@ -29,7 +29,7 @@ Termination run(Context& context, const DescriptorsSettings&) {
   const Json commands = describeAllCommands();
   for (const Json& command : commands) {
     std::string name = "explica-" + command["command"].get<std::string>();
-    std::ranges::replace(name, ' ', '-');
+    std::replace(name.begin(), name.end(), ' ', '-');
     writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
   }
   writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));

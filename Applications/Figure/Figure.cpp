@@ -159,7 +159,7 @@ std::vector<Shown> readFiles(const FigureSettings& s) {
     throw InvalidInput("'" + s.files.front() + "': is no surface, and a figure needs one");
   }
   for (const std::string& file : data) give(file, all);
-  std::ranges::stable_sort(all, [](const Shown& a, const Shown& b) {
+  std::stable_sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) {
     return a.side != b.side && a.side == Hemisphere::Left;
   });
   return all;

@@ -148,7 +148,7 @@ std::vector<bool> cortexOf(Context& context, const std::string& surface, const T
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     if (wall[v]) middle += mesh.positions.row(v).transpose();
   }
-  middle /= static_cast<double>(std::ranges::count(wall, true));
+  middle /= static_cast<double>(std::count(wall.begin(), wall.end(), true));
   context.info(
       printed("medial wall: taken to be the flattest fortieth of the surface, about %.0f, %.0f, "
               "%.0f mm; --cortex would say",

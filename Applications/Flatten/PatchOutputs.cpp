@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace explica::app {
 namespace {
@@ -43,7 +44,7 @@ template <class Vector>
 auto atPatch(const Vector& whole, const flattening::Disc& disc) {
   Vector part(static_cast<Eigen::Index>(disc.vertexOrigin.size()));
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
-    part[v] = whole[disc.vertexOrigin[v]];
+    part[static_cast<Eigen::Index>(v)] = whole[disc.vertexOrigin[v]];
   }
   return part;
 }
@@ -53,7 +54,7 @@ Eigen::VectorXd onWhole(const Eigen::VectorXd& part, const flattening::Disc& dis
                         Eigen::Index vertexCount, double elsewhere) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(vertexCount), count = sum;
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
-    sum[disc.vertexOrigin[v]] += part[v];
+    sum[disc.vertexOrigin[v]] += part[static_cast<Eigen::Index>(v)];
     count[disc.vertexOrigin[v]] += 1;
   }
   return (count.array() > 0).select(sum.cwiseQuotient(count), elsewhere);
@@ -94,15 +95,15 @@ std::vector<io::LabelMap> regionsOnPatch(const FlattenSettings& s, const flatten
   for (io::LabelMap& one : regions) {
     one.keys = atPatch(one.keys, disc);
     std::erase_if(one.table, [&](const io::LabelEntry& entry) {
-      return std::ranges::find(one.keys, entry.key) == one.keys.end();
+      return std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end();
     });
   }
   return regions;
 }
 
 void writeRegions(Context& context, io::LabelMap regions, const std::string& structure) {
-  const bool zeroIsRegion =
-      std::ranges::any_of(regions.table, [](const io::LabelEntry& e) { return e.key == 0; });
+  const bool zeroIsRegion = std::any_of(regions.table.begin(), regions.table.end(),
+                                        [](const io::LabelEntry& e) { return e.key == 0; });
   const Label none = zeroIsRegion ? -1 : 0;
   for (Label& key : regions.keys) key = key == io::kNoRegion ? none : key;
   regions.table.insert(regions.table.begin(), {none, "???", {0, 0, 0, 0}});
@@ -117,11 +118,11 @@ TriangleMesh wholeMap(const TriangleMesh& reference, const flattening::Disc& dis
   TriangleMesh flat{Positions::Zero(reference.vertexCount(), 3), Faces(disc.mesh.faceCount(), 3)};
   for (std::size_t v = 0; v < disc.vertexOrigin.size(); ++v) {
     if (second[v]) continue;
-    flat.positions.row(disc.vertexOrigin[v]).head<2>() = map.row(v);
+    flat.positions.row(disc.vertexOrigin[v]).head<2>() = map.row(static_cast<Eigen::Index>(v));
   }
   Eigen::Index kept = 0;
   for (std::size_t f = 0; f < disc.faceOrigin.size(); ++f) {
-    const auto corners = disc.mesh.faces.row(f);
+    const auto corners = disc.mesh.faces.row(static_cast<Eigen::Index>(f));
     if (second[corners[0]] || second[corners[1]] || second[corners[2]]) continue;
     flat.faces.row(kept++) = reference.faces.row(disc.faceOrigin[f]);
   }
@@ -148,7 +149,7 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
   io::writeGiftiSurface(context.output("patch_flat.surf.gii"), {positions, disc.mesh.faces},
                         metadata);
   Eigen::VectorXd numbers(disc.mesh.vertexCount());
-  std::ranges::copy(disc.vertexOrigin, numbers.begin());
+  std::copy(disc.vertexOrigin.begin(), disc.vertexOrigin.end(), numbers.begin());
   io::writeGiftiShape(context.output("vertex_of.shape.gii"), {{"vertex", "", numbers}},
                       metadata.structure);
   const std::string side = metadata.structure == "CortexRight" ? "rh" : "lh";

@@ -76,12 +76,12 @@ Volume<Eigen::Vector3f> placesIn(const io::PointTransform& transform,
   }
   Positions places(static_cast<Eigen::Index>(known.size()), 3);
   for (std::size_t n = 0; n < known.size(); ++n) {
-    places.row(n) = points[known[n]].cast<double>().transpose();
+    places.row(static_cast<Eigen::Index>(n)) = points[known[n]].cast<double>().transpose();
   }
   const Positions moved = transform(places);
   Volume<Eigen::Vector3f> result = points;
   for (std::size_t n = 0; n < known.size(); ++n) {
-    result[known[n]] = moved.row(n).transpose().cast<float>();
+    result[known[n]] = moved.row(static_cast<Eigen::Index>(n)).transpose().cast<float>();
   }
   return result;
 }

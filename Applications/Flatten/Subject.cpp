@@ -101,7 +101,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     const auto marked =
         io::markedByLabels({s.labels.begin(), s.labels.end()}, s.labelKeys, mesh.vertexCount());
     flattening::VertexKeys keys(mesh.vertexCount());
-    std::ranges::copy(marked, keys.begin());
+    std::copy(marked.begin(), marked.end(), keys.begin());
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, keys);
   }
   const auto region = std::filesystem::path(s.surface).parent_path() / "region.label.gii";

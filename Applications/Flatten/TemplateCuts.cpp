@@ -86,8 +86,8 @@ std::map<Label, std::string> chosenCuts(const FlattenSettings& s, const io::Labe
   }
   if (s.cutNames.empty()) return all;
   for (const std::string& name : s.cutNames) {
-    const auto at =
-        std::ranges::find_if(all, [&](const auto& entry) { return entry.second == name; });
+    const auto at = std::find_if(all.begin(), all.end(),
+                                 [&](const auto& entry) { return entry.second == name; });
     if (at == all.end()) {
       throw InvalidInput("--cut-name: the template has no cut '" + name + "'; it has " + known);
     }

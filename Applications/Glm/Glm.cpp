@@ -115,7 +115,7 @@ statistics::Formula formulaOf(const GlmSettings& s) {
   if (s.site == SiteModel::Fixed) {
     formula.categorical.insert(s.siteColumn);
     const statistics::Term term = {s.siteColumn};
-    if (std::ranges::find(formula.terms, term) == formula.terms.end()) {
+    if (std::find(formula.terms.begin(), formula.terms.end(), term) == formula.terms.end()) {
       formula.terms.push_back(term);
     }
   } else if (s.site == SiteModel::Random) {
@@ -161,7 +161,7 @@ void harmonise(const GlmSettings& s, const Observations& o, const statistics::De
   for (std::size_t c = 0; c < design.columns.size(); ++c) {
     if (design.columns[c] == "intercept") continue;
     covariates.conservativeResize(Eigen::NoChange, covariates.cols() + 1);
-    covariates.rightCols(1) = design.matrix.col(c);
+    covariates.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
   }
   statistics::combat(values, covariates, levelsIn(s.siteColumn, o));
 }
@@ -203,8 +203,8 @@ Eigen::MatrixXd fit(Context& context, const GlmSettings& s, const Observations& 
 void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, GlmResults& results) {
   if (!o.surface) return;
   const auto stored = [&](std::size_t person, std::span<double> values) {
-    const Eigen::VectorXd row = fitted.row(person);
-    std::ranges::copy(row, values.begin());
+    const Eigen::VectorXd row = fitted.row(static_cast<Eigen::Index>(person));
+    std::copy(row.begin(), row.end(), values.begin());
   };
   const statistics::PersonReader reader =
       fitted.size() > 0 ? statistics::PersonReader(stored) : o.reader;

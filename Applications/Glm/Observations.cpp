@@ -71,7 +71,8 @@ void readMaps(const std::vector<fs::path>& files, const std::vector<Hemisphere>&
       throw InvalidInput("'" + files[h].string() + "': holds " + std::to_string(maps.size()) +
                          " maps; one a person is needed");
     }
-    std::ranges::copy(maps.front().values, values.begin() + hemispheres[h].first);
+    std::copy(maps.front().values.begin(), maps.front().values.end(),
+              values.begin() + hemispheres[h].first);
   }
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (!mask[v]) values[v] = kNaN;
@@ -152,7 +153,7 @@ void readMask(const GlmSettings& s, Observations& o) {
         labels ? Eigen::VectorXd(io::readVertexLabels(s.masks[h], side.count).keys.cast<double>())
                : io::readVertexMaps(s.masks[h], side.count).front().values;
     for (Eigen::Index v = 0; v < side.count; ++v) {
-      o.mask[side.first + v] = inside[v] != 0;
+      o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;
     }
   }
 }
@@ -179,13 +180,13 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
     };
     bool wanted = false;
     if (!s.columns.empty()) {
-      wanted = std::ranges::any_of(s.columns, is);
+      wanted = std::any_of(s.columns.begin(), s.columns.end(), is);
     } else if (table.find(formula.response)) {
       wanted = name == formula.response;
     } else {
       wanted = c != personColumn(table, s) && statistics::isNumeric(table, c) &&
-               std::ranges::none_of(formula.terms, [&](const auto& term) {
-                 return std::ranges::find(term, name) != term.end();
+               std::none_of(formula.terms.begin(), formula.terms.end(), [&](const auto& term) {
+                 return std::find(term.begin(), term.end(), name) != term.end();
                });
     }
     if (wanted) columns.push_back(c);
@@ -219,8 +220,8 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   o.mask.assign(columns.size(), true);
   o.reader = [values = statistics::numbersIn(table, rows, columns)](std::size_t person,
                                                                     std::span<double> out) {
-    const Eigen::VectorXd row = values.row(person);
-    std::ranges::copy(row, out.begin());
+    const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
+    std::copy(row.begin(), row.end(), out.begin());
   };
 }
 

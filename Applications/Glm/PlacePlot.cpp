@@ -43,7 +43,10 @@ std::vector<int> nearestPlaces(const Eigen::Ref<const Positions>& vertices,
   std::vector<int> nearest(static_cast<std::size_t>(vertices.rows()));
   parallelFor(nearest.size(), 64, [&](std::size_t v) {
     Eigen::Index best = 0;
-    (at.rowwise() - vertices.row(v)).rowwise().squaredNorm().minCoeff(&best);
+    (at.rowwise() - vertices.row(static_cast<Eigen::Index>(v)))
+        .rowwise()
+        .squaredNorm()
+        .minCoeff(&best);
     nearest[v] = static_cast<int>(best);
   });
   return nearest;

@@ -18,8 +18,8 @@ std::string reportOf(const Observations& o, std::size_t person) {
 Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contrast& contrast) {
   const statistics::Factor* factor = nullptr;
   for (std::size_t c = 0; c < r.design.columns.size(); ++c) {
-    if (contrast.weights.row(c).isZero()) continue;
-    for (const std::string& name : r.design.terms[r.design.termOf[c]]) {
+    if (contrast.weights.row(static_cast<Eigen::Index>(c)).isZero()) continue;
+    for (const std::string& name : r.design.terms[static_cast<std::size_t>(r.design.termOf[c])]) {
       for (const auto& f : r.design.factors) {
         if (f.name == name && (factor == nullptr || f.levels.empty())) factor = &f;
       }
@@ -38,7 +38,7 @@ Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contra
     if (factor->levels.empty()) {
       axis.x.push_back(statistics::numberIn(cell).value_or(std::nan("")));
     } else {
-      const auto level = std::ranges::find(factor->levels, cell);
+      const auto level = std::find(factor->levels.begin(), factor->levels.end(), cell);
       axis.x.push_back(static_cast<double>(level - factor->levels.begin()));
     }
   }
@@ -58,7 +58,7 @@ std::string pointsSvg(const Observations& o, const Axis& axis, const Eigen::Vect
   const bool named = o.people.size() <= kMostNamed;
   std::string svg, path;
   for (std::size_t i = 0; i < o.people.size(); ++i) {
-    const double value = y[i];
+    const double value = y[static_cast<Eigen::Index>(i)];
     if (!std::isfinite(value) || !std::isfinite(axis.x[i])) continue;
     // Of a level, people are spread in the order of the table.
     const double aside =
@@ -85,7 +85,8 @@ std::string pointsSvg(const Observations& o, const Axis& axis, const Eigen::Vect
 std::string scatterSvg(const Observations& o, const Axis& axis, const Eigen::VectorXd& y,
                        const std::string& title) {
   constexpr double kPlotWidth = 420, kPlotHeight = 260, kLeft = 56, kBottom = 42, kTop = 26;
-  double x0 = *std::ranges::min_element(axis.x), x1 = *std::ranges::max_element(axis.x);
+  double x0 = *std::min_element(axis.x.begin(), axis.x.end()),
+         x1 = *std::max_element(axis.x.begin(), axis.x.end());
   double y0 = std::nan(""), y1 = std::nan("");
   for (const double v : y) {
     y0 = std::fmin(y0, v);

@@ -96,7 +96,7 @@ report::ColourScale symmetric(const Eigen::VectorXd& values, const std::string& 
   for (const double v : values) {
     if (std::isfinite(v)) sizes.push_back(std::abs(v));
   }
-  std::ranges::sort(sizes);
+  std::sort(sizes.begin(), sizes.end());
   const double most = sizes.empty() ? 1 : std::max(sizes[sizes.size() * 99 / 100], 1e-12);
   return {report::ColourMap::Diverging, -most, most, title, ""};
 }
@@ -169,7 +169,7 @@ std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& 
     for (Eigen::Index v = 0; v < o.places; ++v) {
       if (!std::isnan(r.maps.contrasts[k].p[v])) places.push_back(v);
     }
-    std::ranges::stable_sort(places, [&](Eigen::Index a, Eigen::Index b) {
+    std::stable_sort(places.begin(), places.end(), [&](Eigen::Index a, Eigen::Index b) {
       return r.maps.contrasts[k].p[a] < r.maps.contrasts[k].p[b];
     });
   }

@@ -64,9 +64,9 @@ const Hemisphere& hemisphereOf(const Observations& o, Eigen::Index place) {
 }
 
 std::string regionOf(const Observations& o, Eigen::Index place) {
-  if (!o.placeNames.empty()) return o.placeNames[place];
+  if (!o.placeNames.empty()) return o.placeNames[static_cast<std::size_t>(place)];
   const Hemisphere& side = hemisphereOf(o, place);
-  return side.regions.empty() ? "" : side.regions[place - side.first];
+  return side.regions.empty() ? "" : side.regions[static_cast<std::size_t>(place - side.first)];
 }
 
 void writeMaps(Context& context, const Observations& o, const GlmResults& r) {
@@ -122,11 +122,11 @@ std::string designTable(const Observations& o, const GlmResults& r) {
   std::string text = row(head);
   for (std::size_t i = 0; i < o.people.size(); ++i) {
     std::vector<std::string> cells = {o.people[i]};
-    for (const double value : r.design.matrix.row(i)) {
+    for (const double value : r.design.matrix.row(static_cast<Eigen::Index>(i))) {
       cells.push_back(numberText(value, 9));
     }
     if (!r.design.groups.empty()) {
-      cells.push_back(r.design.groupNames[r.design.groups[i]]);
+      cells.push_back(r.design.groupNames[static_cast<std::size_t>(r.design.groups[i])]);
     }
     text += row(cells);
   }
@@ -143,12 +143,12 @@ std::string regionTable(const Observations& o, const GlmResults& r) {
                           correlation = statistics::partialCorrelation(maps);
     const bool t = r.contrasts[k].isT();
     for (Eigen::Index v = 0; v < o.places; ++v) {
-      text += row({o.placeNames[v], r.contrasts[k].name, std::to_string(r.maps.people[v]),
-                   numberText(maps.effect[v]), numberText(maps.effect[v] - width[v]),
-                   numberText(maps.effect[v] + width[v]), numberText(maps.statistic[v]),
-                   numberText(maps.df[v]), numberText(maps.p[v]), numberText(r.inferences[k].q[v]),
-                   numberText(at(r.inferences[k].familyWise, v)), t ? numberText(d[v]) : "n/a",
-                   t ? numberText(correlation[v]) : "n/a"});
+      text += row({o.placeNames[static_cast<std::size_t>(v)], r.contrasts[k].name,
+                   std::to_string(r.maps.people[v]), numberText(maps.effect[v]),
+                   numberText(maps.effect[v] - width[v]), numberText(maps.effect[v] + width[v]),
+                   numberText(maps.statistic[v]), numberText(maps.df[v]), numberText(maps.p[v]),
+                   numberText(r.inferences[k].q[v]), numberText(at(r.inferences[k].familyWise, v)),
+                   t ? numberText(d[v]) : "n/a", t ? numberText(correlation[v]) : "n/a"});
     }
   }
   return text;

@@ -206,7 +206,7 @@ std::map<Label, io::LabelEntry> volumeLabels(const io::LabelMap& labels, bool le
   for (const io::LabelEntry& entry : labels.table) {
     if (io::meansNoRegion(entry.name)) continue;
     result[entry.key] = entry;
-    own = own && freeSurfer.contains(entry.name);
+    own = own && freeSurfer.count(entry.name) > 0;
   }
   for (auto& [key, entry] : result) {
     if (own) entry.key = (left ? 1000 : 2000) + freeSurfer[entry.name];

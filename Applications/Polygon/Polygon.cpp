@@ -144,7 +144,7 @@ io::VertexMap edgeMap(const planar::Curve& curve, const planar::Region& region, 
   io::VertexMap map{std::move(name), "", Eigen::VectorXd::Constant(curve.edgeCount(), kNaN)};
   const std::vector<int> edges = planar::edgesOf(curve, region);
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    map.values[edges[k]] = values[k];
+    map.values[edges[k]] = values[static_cast<Eigen::Index>(k)];
   }
   return map;
 }

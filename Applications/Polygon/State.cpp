@@ -89,7 +89,7 @@ std::string textOf(const PolygonCheckpoint& state) {
                {"input_region", jsonOf(state.inputRegion)}};
   Positions2 view(static_cast<Eigen::Index>(state.view.points.size()), 2);
   for (std::size_t p = 0; p < state.view.points.size(); ++p) {
-    view.row(p) = state.view.points[p].transpose();
+    view.row(static_cast<Eigen::Index>(p)) = state.view.points[p].transpose();
   }
   json["viewpoints"] = jsonOf(view);
   json["weights"] = state.view.weights;

@@ -152,7 +152,8 @@ std::vector<maps::RegionMoments> momentsOf(const io::LabelMap& labels, const Eig
                                     static_cast<std::size_t>(labels.keys.size()));
   auto moments = maps::regionMoments(keys, map, areas, regions);
   std::vector<Label> one(keys.size());
-  std::ranges::transform(keys, one.begin(), [](Label key) { return key == io::kNoRegion ? 0 : 1; });
+  std::transform(keys.begin(), keys.end(), one.begin(),
+                 [](Label key) { return key == io::kNoRegion ? 0 : 1; });
   moments.push_back(maps::regionMoments(one, map, areas, std::vector<Label>{1}).front());
   return moments;
 }

@@ -74,7 +74,7 @@ std::string rowsOf(const std::string& name, const TriangleMesh& mesh,
   std::string text;
   for (const geometry::FacePair& pair : repaired.before) {
     const Point place = geometry::placeOfCrossing(mesh, pair);
-    const bool left = std::ranges::binary_search(repaired.after, pair);
+    const bool left = std::binary_search(repaired.after.begin(), repaired.after.end(), pair);
     text += name + printed("\t%d\t%d\t%.4f\t%.4f\t%.4f\t%s\n", pair[0], pair[1], place[0], place[1],
                            place[2], left ? "no" : "yes");
   }

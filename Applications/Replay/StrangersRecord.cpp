@@ -75,7 +75,7 @@ void forEachText(Json& value, const std::function<void(Json&)>& change) {
 /// A default is no choice of the user's: a command may choose better, for its steps above all.
 bool wasGiven(const Json& record, const Parameter& parameter, const Json& value) {
   const Json given = record.value("given", Json::array());
-  return std::ranges::find(given, parameter.option.name) != given.end() ||
+  return std::find(given.begin(), given.end(), parameter.option.name) != given.end() ||
          value != provenance::valueOf(parameter.option);
 }
 

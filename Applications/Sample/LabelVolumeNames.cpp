@@ -26,7 +26,7 @@ io::LabelMap LabelVolumeNames::mapOf(const std::string& name, std::span<const La
     map.keys[v] = keys[v] == sampling::kNoLabel ? kNotKnownKey : keys[v];
   }
   std::vector<Label> used(map.keys.begin(), map.keys.end());
-  std::ranges::sort(used);
+  std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   map.table = io::tableFor(used, names_, freeSurfer_);
   for (io::LabelEntry& entry : map.table) {

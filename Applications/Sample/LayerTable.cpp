@@ -99,7 +99,7 @@ Tissue readTissue(Context& context, const SampleSettings& s) {
   tissue.centres.resize(static_cast<Eigen::Index>(tissue.voxels.voxels.size()), 3);
   for (std::size_t n = 0; n < tissue.voxels.voxels.size(); ++n) {
     const auto [i, j, k] = grid.subscripts(tissue.voxels.voxels[n]);
-    tissue.centres.row(n) = grid.toWorld(Vector(i, j, k)).transpose();
+    tissue.centres.row(static_cast<Eigen::Index>(n)) = grid.toWorld(Vector(i, j, k)).transpose();
   }
   setRegions(context, s, tissue);
   return tissue;
@@ -135,7 +135,7 @@ void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissu
     const std::vector<float> values = sampler.sample(block);
     for (std::size_t f = 0; f * count < values.size(); ++f, ++frame) {
       const std::span<const float> one = std::span(values).subspan(f * count, count);
-      known += std::ranges::count_if(one, [](float v) { return !std::isnan(v); });
+      known += std::count_if(one.begin(), one.end(), [](float v) { return !std::isnan(v); });
       text += rowsOf(
           sampling::layerTable(tissue.voxels, tissue.layers, one, tissue.regionOf, tissue.regions),
           tissue.layers.layers, many ? std::to_string(frame) + "\t" : "");

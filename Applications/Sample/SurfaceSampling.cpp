@@ -205,7 +205,7 @@ class SurfaceSampling {
 
   void addValid(const std::string& path, const std::string& name,
                 const std::vector<std::uint8_t>& known) {
-    const auto sum = std::ranges::count(known, 1);
+    const auto sum = std::count(known.begin(), known.end(), 1);
     if (sum == 0) {
       throw InvalidInput("'" + path +
                          "': is known at no vertex of the surface; do both lie in the same space? "

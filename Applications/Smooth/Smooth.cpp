@@ -60,7 +60,7 @@ std::vector<bool> maskOf(const std::optional<std::string>& path, Eigen::Index ve
                                      : io::readVertexMaps(*path, vertexCount).front().values;
   std::vector<bool> mask(static_cast<std::size_t>(vertexCount));
   for (std::size_t v = 0; v < mask.size(); ++v) {
-    mask[v] = values[v] != 0;
+    mask[v] = values[static_cast<Eigen::Index>(v)] != 0;
   }
   return mask;
 }
@@ -72,7 +72,7 @@ struct MapFile {
   [[nodiscard]] Eigen::MatrixXd values() const {
     Eigen::MatrixXd all(maps.front().values.size(), static_cast<Eigen::Index>(maps.size()));
     for (std::size_t m = 0; m < maps.size(); ++m) {
-      all.col(m) = maps[m].values;
+      all.col(static_cast<Eigen::Index>(m)) = maps[m].values;
     }
     return all;
   }
@@ -121,7 +121,7 @@ Termination run(Context& context, const SmoothSettings& s) {
     const Eigen::MatrixXd after = maps::smoothMaps(mesh, before, s.fwhm, mask, context.monitor());
     std::vector<io::VertexMap> written = file.maps;
     for (std::size_t m = 0; m < written.size(); ++m) {
-      written[m].values = after.col(m);
+      written[m].values = after.col(static_cast<Eigen::Index>(m));
     }
     io::writeVertexMaps(context.output(file.output), written, file.structure, mesh.faceCount());
     each.push_back({{"map", file.output},

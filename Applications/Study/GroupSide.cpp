@@ -15,6 +15,8 @@
 #include "Explica/Report/Figure.h"
 #include "GroupParts.h"
 
+#include <algorithm>
+
 namespace explica::app {
 namespace {
 

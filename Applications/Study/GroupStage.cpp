@@ -53,7 +53,7 @@ std::string labelOf(const study::StudyRow& row) {
 }
 
 bool isNamed(const std::vector<std::string>& names, const study::StudyRow& row) {
-  return std::ranges::any_of(names, [&](const std::string& name) {
+  return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
     const std::string full = name.starts_with("sub-") ? name : "sub-" + name;
     return full == row.participant || full == personOf(row) || full == labelOf(row);
   });
@@ -78,8 +78,8 @@ std::vector<Member> membersOf(const fs::path& out, const GroupSettings& s,
     members.push_back(std::move(member));
   }
   for (const std::string& name : s.include) {
-    const bool there =
-        std::ranges::any_of(rows, [&](const study::StudyRow& row) { return isNamed({name}, row); });
+    const bool there = std::any_of(
+        rows.begin(), rows.end(), [&](const study::StudyRow& row) { return isNamed({name}, row); });
     if (!there) throw InvalidInput("include: there is no " + name + " among the study's people");
   }
   return members;

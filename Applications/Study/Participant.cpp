@@ -110,8 +110,8 @@ fs::path folderOf(const StudyParticipantSettings& s, const study::PlannedRun& ru
 /// What was kept of a subject is what doing it again would give.
 bool allKept(const StudyParticipantSettings& s, const study::PlannedSubject& subject,
              const std::string& key) {
-  return std::ranges::all_of(
-      subject.runs, [&](const study::PlannedRun& run) { return isKept(folderOf(s, run), key); });
+  return std::all_of(subject.runs.begin(), subject.runs.end(),
+                     [&](const study::PlannedRun& run) { return isKept(folderOf(s, run), key); });
 }
 
 Termination run(Context& context, const StudyParticipantSettings& s) {

@@ -58,8 +58,9 @@ surface::VertexKeys regionKeys(const CortexRegions& regions, const surface::Cort
   }
   // Where an atlas holds FreeSurfer's cortical labels, only these are regions, and only our side's.
   const auto& voxels = regions.atlas->data;
-  const bool freeSurfer =
-      std::ranges::any_of(voxels, [](Label label) { return !io::freeSurferRegion(label).empty(); });
+  const bool freeSurfer = std::any_of(voxels.begin(), voxels.end(), [](Label label) {
+    return !io::freeSurferRegion(label).empty();
+  });
   const Label thousand = structure == "CortexRight" ? 2 : 1;
   return surface::labelsWithin(
       *regions.atlas, made.white.mesh.positions, made.pial.positions, [&](Label label) {

@@ -64,8 +64,8 @@ TissueInputs readTissue(Context& context, const SurfaceSettings& s) {
     const Volume<Label> mask =
         scaled(readLabels(context, "insulated-mask", *s.insulatedMask, reading), s.scale);
     insulated = Volume<std::uint8_t>(mask.grid);
-    std::ranges::transform(mask.data, insulated.data.begin(),
-                           [](Label label) { return static_cast<std::uint8_t>(label != 0); });
+    std::transform(mask.data.begin(), mask.data.end(), insulated.data.begin(),
+                   [](Label label) { return static_cast<std::uint8_t>(label != 0); });
   }
   auto step = context.step("tissue");
   const Volume<float> white = surface::sharesOf(inner, s.level, "inner-level");

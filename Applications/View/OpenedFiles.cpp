@@ -26,7 +26,8 @@ bool isVolume(const fs::path& path) {
   const std::string name = path.filename().string();
   constexpr std::array kEndings = {".nii",  ".nii.gz", ".mgh", ".mgz", ".nrrd",
                                    ".nhdr", ".mha",    ".mhd", ".hdr", ".img"};
-  return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return name.ends_with(ending); });
 }
 
 std::string counted(std::size_t count, const char* what) {

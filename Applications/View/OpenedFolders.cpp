@@ -137,7 +137,7 @@ void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& 
   }
   for (std::size_t n = 0; n < maps.size(); ++n) {
     for (std::size_t v = 0; v < on.size(); ++v) {
-      if (!on[v]) maps[n].values[v] = kNaN;
+      if (!on[v]) maps[n].values[static_cast<Eigen::Index>(v)] = kNaN;
     }
     opened.maps.push_back({stem + " " + maps[n].name, maps[n].unit, std::move(maps[n].values),
                            n == 0 ? file.string() : ""});

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 constexpr const char* kValid = "valid.shape.gii";
 
 bool saysThickness(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text.find("thick") != std::string::npos;
 }
 
@@ -54,7 +54,8 @@ void restrict(const ShownSurface& surface, Values& values) {
 bool isLabelFile(const fs::path& file) {
   const std::string name = file.filename().string();
   constexpr std::array kEndings = {".label.gii", ".annot", ".label"};
-  return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
+  return std::any_of(kEndings.begin(), kEndings.end(),
+                     [&](const char* ending) { return name.ends_with(ending); });
 }
 
 std::vector<io::VertexMap> readMapsOn(const ShownSurface& surface, const fs::path& file) {

@@ -128,8 +128,8 @@ report::SurfacePaint readPaint(const ViewSettings& s, const ShownSurface& surfac
   } else if (s.map) {
     const auto maps = readMapsOn(surface, *s.map);
     const auto chosen =
-        s.mapName ? std::ranges::find_if(
-                        maps, [&](const io::VertexMap& m) { return m.name == *s.mapName; })
+        s.mapName ? std::find_if(maps.begin(), maps.end(),
+                                 [&](const io::VertexMap& m) { return m.name == *s.mapName; })
                   : maps.begin();
     if (chosen == maps.end()) {
       throw InvalidInput(*s.map + ": holds no map named '" + s.mapName.value_or("") + "' but " +

@@ -36,7 +36,9 @@ Verbs verbsOf(const Json& commands) {
 /// What may follow an option, as the shell function's `values`: words, or -f files, or -d folders.
 std::string bashValues(const Json& p) {
   if (!p["choices"].empty()) {
-    return "-W " + joined(p["choices"], " ", word);
+    std::string words;
+    for (const Json& choice : p["choices"]) words += " " + word(choice);
+    return "-W" + words;
   }
   if (isFolder(p) || p["name"] == "out") return "-d";
   const bool textOrFile = isFile(p) || (p["type"] == "text" && p["placeholder"] != "N");
@@ -136,7 +138,7 @@ std::string zshCompletionOf(const Json& commands) {
     if (space != std::string::npos) {
       kindsOf[verb] += " " + quotedShell(name.substr(space + 1) + ":" + synopsis);
     }
-    if (std::ranges::find(verbs, verb) != verbs.end()) continue;
+    if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end()) continue;
     verbs.push_back(verb);
     described += "  " + quotedShell(verb + ":" + synopsis) + "\n";
   }
@@ -161,7 +163,10 @@ std::string zshCompletionOf(const Json& commands) {
       if (!isFlag(p)) {
         std::string action = "_files";
         if (!p["choices"].empty()) {
-          action = "(" + joined(p["choices"], " ", word) + ")";
+          action = "(";
+          for (const Json& choice : p["choices"])
+            action += (action.size() > 1 ? " " : "") + word(choice);
+          action += ")";
         } else if (p["file"].is_null() && p["name"] != "out" && p["name"] != "config" &&
                    p["name"] != "log") {
           action = " ";

@@ -71,7 +71,7 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
   std::error_code ignored;
   file.absolute = fs::absolute(path, ignored).lexically_normal();
   auto& inputs = state_->record.inputs;
-  const bool known = std::ranges::any_of(inputs, [&](const auto& other) {
+  const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const auto& other) {
     return other.absolute == file.absolute && other.role == file.role;
   });
   if (known) return path;
@@ -97,8 +97,9 @@ fs::path Context::output(const std::string& name) {
   if (state_->run.common.dryRun) throw DryRunEnds{};
   if (!state_->folder) throw std::logic_error("command writes no folder, yet asks for " + name);
   const auto& slots = state_->declaration().outputs;
-  const auto slot = std::ranges::find_if(
-      slots, [&](const OutputSlot& s) { return fnmatch(s.pattern.c_str(), name.c_str(), 0) == 0; });
+  const auto slot = std::find_if(slots.begin(), slots.end(), [&](const OutputSlot& s) {
+    return fnmatch(s.pattern.c_str(), name.c_str(), 0) == 0;
+  });
   if (slot == slots.end()) throw std::logic_error("undeclared output " + name);
   if (slot->varies) state_->varying.push_back(name);
   return state_->folder->place(name);
@@ -179,7 +180,7 @@ void Context::warn(const std::string& message) {
 
 bool Context::given(std::string_view name) const {
   if (name == "dry-run") return state_->run.common.dryRun;  // of steps, too
-  return state_->run.given.contains(std::string(name));
+  return state_->run.given.count(std::string(name)) > 0;
 }
 int Context::threads() const {
   return state_->record.threads;

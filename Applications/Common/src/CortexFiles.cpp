@@ -40,20 +40,25 @@ std::vector<Naming> namingsOf(const std::string& side) {
 }
 
 std::optional<Pair> pairBy(const Naming& naming, const fs::path& folder) {
-  std::vector<Pair> found;
+  std::vector<fs::path> found;
   std::error_code absent;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, absent)) {
     const std::string name = entry.path().filename().string();
     if (fnmatch(naming.pattern.c_str(), name.c_str(), 0) != 0) continue;
     std::string pial = name;
     pial.replace(pial.rfind(naming.white), naming.white.size(), naming.pial);
-    if (fs::exists(folder / pial)) found.push_back({entry.path(), folder / pial, {}});
+    if (fs::exists(folder / pial)) found.push_back(entry.path());
   }
   if (found.empty()) return {};
   // The subject's own surface has the shortest name: those of a template name their space, too.
-  return *std::ranges::min_element(found, {}, [](const Pair& pair) {
-    return std::pair(pair.white.native().size(), pair.white.native());
+  const auto first = std::min_element(found.begin(), found.end(), [](const auto& a, const auto& b) {
+    const auto& x = a.native();
+    const auto& y = b.native();
+    return x.size() != y.size() ? x.size() < y.size() : x < y;
   });
+  std::string pial = first->filename().string();
+  pial.replace(pial.rfind(naming.white), naming.white.size(), naming.pial);
+  return Pair{*first, folder / pial, {}};
 }
 
 std::optional<Pair> pairOf(const fs::path& folder, const std::string& side) {

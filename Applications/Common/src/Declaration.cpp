@@ -166,8 +166,8 @@ Declaration& Declaration::defaultOut(const std::string& folder) {
 }
 
 Parameter* Declaration::find(std::string_view wanted) {
-  const auto found =
-      std::ranges::find_if(parameters, [&](const Parameter& p) { return p.option.name == wanted; });
+  const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                  [&](const Parameter& p) { return p.option.name == wanted; });
   return found == parameters.end() ? nullptr : &*found;
 }
 

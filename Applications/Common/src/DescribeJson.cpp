@@ -1,18 +1,28 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "DescriptorWords.h"
 #include "Explica/Provenance/Results.h"
 #include "FirstHelp.h"
 #include "Meeting.h"
 #include "Parse.h"
 #include "Wording.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace explica::app {
 
 using provenance::Json;
+
+namespace {
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+}  // namespace
 
 Json describeJson(const Declaration& d) {
   Json json = Json::object();

@@ -8,6 +8,7 @@
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace explica::app {
 namespace {
@@ -25,11 +26,6 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) {
     text.replace(at, from.size(), to);
   }
-  return text;
-}
-
-std::string upper(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;
 }
 
@@ -62,7 +58,7 @@ std::vector<std::string> categoriesOf(const Json& command) {
   std::vector<std::string> categories;
   for (const Json& p : command["parameters"]) {
     const std::string category = p["positional"] ? "Arguments" : word(p["category"]);
-    if (std::ranges::find(categories, category) == categories.end()) {
+    if (std::find(categories.begin(), categories.end(), category) == categories.end()) {
       categories.push_back(category);
     }
   }

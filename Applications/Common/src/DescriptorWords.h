@@ -22,7 +22,6 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
 
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,
                                    const std::string& to);
-[[nodiscard]] std::string upper(std::string text);
 [[nodiscard]] bool isFile(const Json& p);
 [[nodiscard]] bool isFolder(const Json& p);
 [[nodiscard]] bool isFlag(const Json& p);

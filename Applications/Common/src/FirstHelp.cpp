@@ -214,8 +214,8 @@ explica view cortex/white.surf.gii --views left --screenshot left.png)"},
 
 const FirstHelp* firstHelpOf(std::string_view command) {
   const auto& all = allFirstHelp();
-  const auto found =
-      std::ranges::find_if(all, [&](const FirstHelp& row) { return row.command == command; });
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const FirstHelp& row) { return row.command == command; });
   return found == all.end() ? nullptr : &*found;
 }
 

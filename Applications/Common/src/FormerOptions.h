@@ -74,7 +74,7 @@ inline std::string whatBecameOf(const std::string& option, std::string_view comm
     for (const std::string& prefix : {std::string(), step}) {
       if (option != prefix + std::string(former.before)) continue;
       const std::string now = prefix + std::string(former.now);
-      if (std::ranges::find(known, now) != known.end()) {
+      if (std::find(known.begin(), known.end(), now) != known.end()) {
         return dashes + option + " is called " + dashes + now + " now";
       }
       if (former.now.empty() && (!prefix.empty() || command == former.command)) {

@@ -28,8 +28,8 @@ void arguments(std::ostringstream& out, const Declaration& d) {
 }
 
 std::size_t optionCount(const std::vector<Parameter>& parameters) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(parameters, [](const Parameter& p) { return !p.positional; }));
+  return static_cast<std::size_t>(std::count_if(parameters.begin(), parameters.end(),
+                                                [](const Parameter& p) { return !p.positional; }));
 }
 
 /// The first files that it writes, by name.
@@ -55,7 +55,7 @@ bool shownAtFirst(const Declaration& d, const Parameter& p) {
   const FirstHelp* first = firstHelpOf(d.name);
   if (first != nullptr && !first->options.empty()) {
     const auto& named = first->options;
-    return std::ranges::find(named, p.option.name) != named.end();
+    return std::find(named.begin(), named.end(), p.option.name) != named.end();
   }
   return d.find(p.option.name) != nullptr && optionCount(d.parameters) <= kFewOptions;
 }

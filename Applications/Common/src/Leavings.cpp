@@ -30,7 +30,7 @@ void noteLeaving(const std::filesystem::path& path) {
 void forgetLeaving(const std::filesystem::path& path) {
   const std::lock_guard<std::recursive_mutex> guard(noted().mutex);
   auto& paths = noted().paths;
-  const auto found = std::ranges::find(paths, path);
+  const auto found = std::find(paths.begin(), paths.end(), path);
   if (found != paths.end()) paths.erase(found);
 }
 

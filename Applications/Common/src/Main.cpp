@@ -28,13 +28,13 @@ using provenance::Json;
 std::vector<const Command*> kindsOf(const std::string& verb) {
   std::vector<const Command*> kinds;
   for (const Command& command : allCommands()) {
-    if (command.name().starts_with(verb + " ")) kinds.push_back(&command);
+    if (command.name().rfind(verb + " ", 0) == 0) kinds.push_back(&command);
   }
   return kinds;
 }
 
 bool has(const std::vector<std::string>& words, const std::string& wanted) {
-  const auto end = std::ranges::find(words, "--");
+  const auto end = std::find(words.begin(), words.end(), "--");
   return std::find(words.begin(), end, wanted) != end;
 }
 

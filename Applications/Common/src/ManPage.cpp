@@ -3,7 +3,8 @@
 
 #include "DescriptorWords.h"
 
-#include "Explica/Core/Text.h"
+#include <algorithm>
+#include <cctype>
 
 namespace explica::app {
 namespace {
@@ -14,22 +15,14 @@ std::string roff(std::string text) {
   return text;
 }
 
-/// A term and what it means; `font` is roff's request for the term.
-std::string entry(const std::string& font, const std::string& term, const std::string& meaning) {
-  return ".TP\n" + font + " " + term + "\n" + roff(meaning) + "\n";
-}
-
-std::string exitStatus() {
-  std::string text = ".SH \"EXIT STATUS\"\n";
-  for (const auto& [code, meaning] : kExitCodes) text += entry(".B", std::to_string(code), meaning);
-  return text;
-}
-
 }  // namespace
 
 std::string manPageOf(const Json& command, const std::string& version) {
   const std::string name = "explica-" + replaced(word(command["command"]), " ", "-");
-  std::string text = ".TH " + roff(upper(name)) + " 1 \"\" \"Explica " + roff(version) +
+  std::string title = name;
+  std::transform(title.begin(), title.end(), title.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::string text = ".TH " + roff(title) + " 1 \"\" \"Explica " + roff(version) +
                      "\" \"User Commands\"\n.ad l\n.SH NAME\n" + roff(name) + " \\- " +
                      roff(word(command["synopsis"])) + "\n.SH SYNOPSIS\n.B " +
                      roff(word(command["usage"])) + "\n";
@@ -37,7 +30,10 @@ std::string manPageOf(const Json& command, const std::string& version) {
     text += ".SH DESCRIPTION\n" + roff(word(command["description"])) + "\n";
   }
   for (const std::string& category : categoriesOf(command)) {
-    text += ".SH \"" + roff(upper(category)) + "\"\n";
+    std::string heading = category;
+    std::transform(heading.begin(), heading.end(), heading.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    text += ".SH \"" + roff(heading) + "\"\n";
     for (const Json& p : command["parameters"]) {
       const std::string own = p["positional"] ? "Arguments" : word(p["category"]);
       if (own != category) continue;
@@ -46,26 +42,33 @@ std::string manPageOf(const Json& command, const std::string& version) {
               ? word(p["name"])
               : "--" + word(p["name"]) + (isFlag(p) ? "" : " " + word(p["placeholder"]));
       // A list of choices may break after each of them.
-      text += entry(".B", replaced(roff(left), "|", "|\\:"), helpWithDefault(p));
+      text +=
+          ".TP\n.B " + replaced(roff(left), "|", "|\\:") + "\n" + roff(helpWithDefault(p)) + "\n";
     }
   }
   if (command["writes_folder"]) {
     text += ".SH FILES\n";
     for (const Json& slot : command["outputs"]) {
-      text += entry(".I", roff(word(slot["pattern"])), word(slot["help"]));
+      text += ".TP\n.I " + roff(word(slot["pattern"])) + "\n" + roff(word(slot["help"])) + "\n";
     }
   }
-  text += exitStatus();
+  text += ".SH \"EXIT STATUS\"\n";
+  for (const auto& [code, meaning] : kExitCodes) {
+    text += ".TP\n.B " + std::to_string(code) + "\n" + roff(meaning) + "\n";
+  }
   if (!command["examples"].empty()) {
     text += ".SH EXAMPLES\n";
     for (const Json& e : command["examples"]) {
-      text += entry(".B", roff(word(e["command"])), word(e["what"]));
+      text += ".TP\n.B " + roff(word(e["command"])) + "\n" + roff(word(e["what"])) + "\n";
     }
   }
   if (!command["references"].empty()) {
     text += ".SH REFERENCES\n";
-    text += joined(command["references"], ".PP\n",
-                   [](const Json& reference) { return roff(word(reference)) + "\n"; });
+    std::string between;
+    for (const Json& reference : command["references"]) {
+      text += between + roff(word(reference)) + "\n";
+      between = ".PP\n";
+    }
   }
   return text;
 }
@@ -76,10 +79,14 @@ std::string overviewManPageOf(const Json& commands, const std::string& version) 
                      "cortex or the heart wall, and unfolds it\n"
                      ".SH SYNOPSIS\n.B explica\n.I COMMAND\n[arguments] [options]\n.SH COMMANDS\n";
   for (const Json& command : commands) {
-    const std::string name = roff(replaced(word(command["command"]), " ", "-"));
-    text += entry(".BR", "explica\\-" + name + " (1)", word(command["synopsis"]));
+    text += ".TP\n.BR explica\\-" + roff(replaced(word(command["command"]), " ", "-")) + " (1)\n" +
+            roff(word(command["synopsis"])) + "\n";
   }
-  return text + exitStatus();
+  text += ".SH \"EXIT STATUS\"\n";
+  for (const auto& [code, meaning] : kExitCodes) {
+    text += ".TP\n.B " + std::to_string(code) + "\n" + roff(meaning) + "\n";
+  }
+  return text;
 }
 
 }  // namespace explica::app

@@ -35,8 +35,8 @@ bool namesSurface(const fs::path& file) {
   }
   if (name.starts_with("lh.") || name.starts_with("rh.")) return true;
   const auto endings = io::surfaceEndings();
-  return std::ranges::any_of(endings,
-                             [&](const std::string& ending) { return name.ends_with(ending); });
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](const std::string& ending) { return name.ends_with(ending); });
 }
 
 /// Adds the hashes of the surfaces that a record lists, and of those that these were made from.
@@ -105,8 +105,8 @@ std::string Meeting::meshesOf(const File& one, const File& other) {
     return isVertexData(one.parameter) ? std::string() : meshesOf(other, one);
   }
   if (!isVertexData(one.parameter) || one.surfaces.empty() || other.surfaces.empty()) return {};
-  const bool shared = std::ranges::any_of(
-      one.surfaces, [&](const auto& hash) { return other.surfaces.contains(hash); });
+  const bool shared = std::any_of(one.surfaces.begin(), one.surfaces.end(),
+                                  [&](const auto& hash) { return other.surfaces.count(hash) > 0; });
   if (shared) return {};
   return one.name + " was not made for the mesh of " + other.name + ", as their records tell";
 }
@@ -123,7 +123,7 @@ bool Meeting::hasBothSides(const std::string& role) const {
 void Meeting::contradict(const char* name, const std::string& sentence,
                          std::vector<std::string>& sentences) const {
   if (sentence.empty()) return;
-  if (std::ranges::find(accepted_, name) == accepted_.end()) {
+  if (std::find(accepted_.begin(), accepted_.end(), name) == accepted_.end()) {
     throw InvalidInput(sentence + "; --accept " + name + " goes on all the same");
   }
   sentences.push_back(sentence);

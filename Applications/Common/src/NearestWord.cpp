@@ -43,7 +43,7 @@ std::string meantBy(const std::string& word, const std::vector<std::string>& can
   const auto synonyms = kSynonyms.find(word);
   if (synonyms == kSynonyms.end()) return {};
   for (const auto& synonym : synonyms->second) {
-    if (std::ranges::find(candidates, synonym) != candidates.end()) {
+    if (std::find(candidates.begin(), candidates.end(), synonym) != candidates.end()) {
       return synonym;
     }
   }

@@ -50,7 +50,7 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
         if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
         const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
                           provenance::digestOf(path).sha256 == output["sha256"];
-        if (!ours || std::ranges::find(keep, name) != keep.end()) continue;
+        if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
         fs::remove(path);
         emptied.insert(path.parent_path());
       }
@@ -99,7 +99,7 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
     if (fault) cannot("the output folder cannot be read", folder_, fault.message());
     for (const auto& entry : entries) {
       const std::string name = entry.path().filename().string();
-      if (name.starts_with(".explica-")) continue;  // left by a run that was killed
+      if (name.rfind(".explica-", 0) == 0) continue;  // left by a run that was killed
       throw UsageError(folder_.string() + ": the output folder is not empty (it holds " + name +
                        "); give another --out, or --force to replace what is there");
     }
@@ -227,7 +227,7 @@ fs::path OutputFolder::place(const std::string& name) {
   std::error_code fault;
   fs::create_directories(path.parent_path(), fault);
   if (fault) cannot("cannot be made", path.parent_path(), fault.message());
-  if (std::ranges::find(placed_, name) == placed_.end()) placed_.push_back(name);
+  if (std::find(placed_.begin(), placed_.end(), name) == placed_.end()) placed_.push_back(name);
   return path;
 }
 
@@ -237,7 +237,7 @@ std::vector<std::string> OutputFolder::files() const {
   for (const auto& name : placed_) {
     if (fs::is_regular_file(stage_ / name, ignored)) names.push_back(name);
   }
-  std::ranges::sort(names);
+  std::sort(names.begin(), names.end());
   return names;
 }
 
@@ -261,7 +261,7 @@ void OutputFolder::publish(const std::string& last) {
         fs::create_directories((folder_ / name).parent_path());
         fs::rename(stage_ / name, folder_ / name);
       }
-      if (std::ranges::find(names, last) != names.end()) {
+      if (std::find(names.begin(), names.end(), last) != names.end()) {
         fs::rename(stage_ / last, folder_ / last);
       }
       fs::remove_all(stage_);

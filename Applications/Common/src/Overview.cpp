@@ -49,8 +49,8 @@ std::string kindsOf(std::string_view verb) {
 std::vector<std::string_view> others() {
   std::vector<std::string_view> names;
   for (const Command& command : allCommands()) {
-    const bool listed = std::ranges::any_of(kTasks, [&](const Task& task) {
-      return std::ranges::any_of(task.commands, [&](std::string_view name) {
+    const bool listed = std::any_of(kTasks.begin(), kTasks.end(), [&](const Task& task) {
+      return std::any_of(task.commands.begin(), task.commands.end(), [&](std::string_view name) {
         return command.name() == name || command.name().starts_with(std::string(name) + " ");
       });
     });

@@ -36,11 +36,11 @@ std::vector<std::string> bindNegativeNumbers(const std::vector<std::string>& wor
     if (word.size() < 2 || word[0] != '-') return false;
     const char next = word[1];
     return std::isdigit(static_cast<unsigned char>(next)) || next == '.' ||
-           word.starts_with("-inf");
+           word.rfind("-inf", 0) == 0;
   };
   std::vector<std::string> bound;
   for (const auto& word : words) {
-    const bool afterOption = !bound.empty() && bound.back().starts_with("--") &&
+    const bool afterOption = !bound.empty() && bound.back().rfind("--", 0) == 0 &&
                              bound.back().size() > 2 && bound.back().find('=') == std::string::npos;
     if (afterOption && startsNegative(word)) {
       bound.back() += "=" + word;
@@ -64,7 +64,7 @@ bool looksLikeNumber(std::string word) {
 void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
                                 const std::vector<std::string>& words) {
   for (std::size_t w = 0; w < words.size(); ++w) {
-    const auto found = std::ranges::find_if(parameters, [&](const Parameter* p) {
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const Parameter* p) {
       return !p->positional && words[w] == "--" + p->option.name;
     });
     if (found == parameters.end() || (*found)->severalWords) continue;
@@ -88,9 +88,9 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
 
 /// Whether --report may be asked for: not where pages are among the results already.
 bool mayBeReported(const Declaration& declaration) {
-  const bool ownPage = std::ranges::any_of(declaration.outputs, [](const OutputSlot& output) {
-    return output.pattern == "report.html";
-  });
+  const bool ownPage =
+      std::any_of(declaration.outputs.begin(), declaration.outputs.end(),
+                  [](const OutputSlot& output) { return output.pattern == "report.html"; });
   return declaration.writesOutput && !declaration.writesInPlace && !declaration.handsOutputOn &&
          !ownPage;
 }
@@ -125,8 +125,8 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
   for (const auto& entry : flat.items()) {
     const std::string& key = entry.key();
     const provenance::Json& value = entry.value();
-    const auto found =
-        std::ranges::find_if(parameters, [&](const Parameter* p) { return p->option.name == key; });
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const Parameter* p) { return p->option.name == key; });
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
@@ -165,7 +165,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     const auto& option = all[i]->option;
     if (option.isFlag()) {
       std::string names = "--" + option.name;
-      if (!option.name.starts_with("no-")) names += ",!--no-" + option.name;
+      if (option.name.rfind("no-", 0) != 0) names += ",!--no-" + option.name;
       binding.handle = parser.add_flag(names, binding.flagCount);
       continue;
     }
@@ -181,7 +181,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
 
   try {
     auto reversed = bindNegativeNumbers(words);
-    std::ranges::reverse(reversed);
+    std::reverse(reversed.begin(), reversed.end());
     parser.parse(reversed);
   } catch (const CLI::ExtrasError&) {
     std::vector<std::string> known;
@@ -190,7 +190,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     }
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
-    if (!word.starts_with('-')) throw UsageError("'" + extra + "' was not expected");
+    if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }

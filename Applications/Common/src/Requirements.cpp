@@ -16,7 +16,7 @@ namespace {
 bool holds(const Declaration& declaration, const std::set<std::string>& given,
            const std::string& condition) {
   const auto equals = condition.find('=');
-  if (equals == std::string::npos) return given.contains(condition);
+  if (equals == std::string::npos) return given.count(condition) > 0;
   const Parameter* parameter = declaration.find(condition.substr(0, equals));
   return parameter && parameter->option.text() == condition.substr(equals + 1);
 }
@@ -38,8 +38,8 @@ std::string needsText(const Declaration& declaration, const Parameter& parameter
 }
 
 void requireSomething(const Declaration& declaration, const std::set<std::string>& given) {
-  const bool reads = std::ranges::any_of(declaration.parameters,
-                                         [](const Parameter& p) { return p.file.has_value(); });
+  const bool reads = std::any_of(declaration.parameters.begin(), declaration.parameters.end(),
+                                 [](const Parameter& p) { return p.file.has_value(); });
   if (!reads || !given.empty()) return;
   throw UsageError("nothing is given to work on; usage: " + usageLine(declaration) +
                    " (see --help)");
@@ -55,9 +55,9 @@ void refuseIgnored(const Declaration& declaration, const std::set<std::string>& 
                        " exclude each other: leave one of them out");
     }
     const bool effective =
-        parameter.needs.empty() || std::ranges::any_of(parameter.needs, [&](const auto& condition) {
-          return holds(declaration, given, condition);
-        });
+        parameter.needs.empty() ||
+        std::any_of(parameter.needs.begin(), parameter.needs.end(),
+                    [&](const auto& condition) { return holds(declaration, given, condition); });
     if (!effective) {
       throw UsageError(dashed(parameter) + " has no effect without " +
                        needsText(declaration, parameter) + ": leave it out, or add that");

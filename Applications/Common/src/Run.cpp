@@ -29,7 +29,7 @@ using provenance::Json;
 
 /// Result keys that start so are times: they differ between equal runs.
 bool isTime(const std::string& key) {
-  return key.starts_with("seconds");
+  return key.rfind("seconds", 0) == 0;
 }
 
 /// Hashes every file that a declared input names, so that a missing one is reported before any
@@ -207,7 +207,8 @@ void recordOutputs(Context::State& state) {
   parallelFor(files.size(), 1,
               [&](std::size_t f) { digests[f] = provenance::digestOf(places[f]); });
   for (std::size_t f = 0; f < files.size(); ++f) {
-    const bool varies = std::ranges::find(state.varying, files[f]) != state.varying.end();
+    const bool varies =
+        std::find(state.varying.begin(), state.varying.end(), files[f]) != state.varying.end();
     state.record.outputs.push_back({files[f], digests[f], varies});
   }
   for (const auto& [name, path] : state.nestedRecords) {

@@ -40,7 +40,7 @@ struct Context::State {
   Stopwatch seconds = {};
 
   [[nodiscard]] bool doubtful() const {
-    return !plausible || std::ranges::any_of(reasons, [](const auto& reason) {
+    return !plausible || std::any_of(reasons.begin(), reasons.end(), [](const auto& reason) {
       return reason.first == Judgement::Doubt;
     });
   }

@@ -134,7 +134,8 @@ std::string usageLine(const Declaration& d) {
 std::vector<std::string> categoriesOf(const std::vector<Parameter>& parameters) {
   std::vector<std::string> categories;
   for (const Parameter& p : parameters) {
-    if (!p.positional && std::ranges::find(categories, p.option.category) == categories.end()) {
+    if (!p.positional &&
+        std::find(categories.begin(), categories.end(), p.option.category) == categories.end()) {
       categories.push_back(p.option.category);
     }
   }

@@ -179,13 +179,13 @@ double volumeOf(const AnatomicalGrid& grid, Eigen::Index cell) {
 /// Takes out the cells that are turned over or flat at a corner.
 void leaveOutDegenerate(AnatomicalGrid& grid) {
   std::vector<std::uint8_t> good(static_cast<std::size_t>(grid.cells.rows()));
-  parallelFor(good.size(), [&](std::size_t c) {
+  parallelFor(good.size(), 1024, [&](std::size_t c) {
     good[c] = lowestCorner(grid, static_cast<Eigen::Index>(c)) > kLevel;
   });
   Eigen::Index kept = 0;
   for (std::size_t c = 0; c < good.size(); ++c) {
     if (!good[c]) continue;
-    grid.cells.row(kept++) = grid.cells.row(c);
+    grid.cells.row(kept++) = grid.cells.row(static_cast<Eigen::Index>(c));
   }
   grid.degenerate = good.size() - static_cast<std::size_t>(kept);
   grid.cells.conservativeResize(kept, Eigen::NoChange);

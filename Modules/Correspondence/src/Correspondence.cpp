@@ -66,7 +66,7 @@ Steps stepsOf(const Tracer& tracer) {
   Steps steps;
   steps.count = count;
   steps.of.resize(n);
-  parallelFor(n, [&](std::size_t r) {
+  parallelFor(n, kBlock, [&](std::size_t r) {
     const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
     const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
     steps.of[r] = static_cast<std::uint16_t>(step);
@@ -117,7 +117,7 @@ Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
   const auto rankAtSlice = [&](int k) {
     const auto place = static_cast<std::int64_t>(k) * size[0] * size[1];
     const auto& places = tracer.placeOf;
-    return std::ranges::lower_bound(places, place) - places.begin();
+    return std::lower_bound(places.begin(), places.end(), place) - places.begin();
   };
   Blocks blocks;
   blocks.rank.resize(tracer.placeOf.size());
@@ -139,12 +139,13 @@ Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
   for (const auto& ranges : bySlab) {
     blocks.ranges.insert(blocks.ranges.end(), ranges.begin(), ranges.end());
   }
-  std::ranges::stable_sort(blocks.ranges, [&](const Blocks::Range& one, const Blocks::Range& two) {
-    const auto middleStep = [&](const Blocks::Range& range) {
-      return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
-    };
-    return middleStep(one) < middleStep(two);
-  });
+  std::stable_sort(blocks.ranges.begin(), blocks.ranges.end(),
+                   [&](const Blocks::Range& one, const Blocks::Range& two) {
+                     const auto middleStep = [&](const Blocks::Range& range) {
+                       return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
+                     };
+                     return middleStep(one) < middleStep(two);
+                   });
   return blocks;
 }
 
@@ -222,7 +223,7 @@ class Sweep {
     turn_.resize(arrivals_.size());
     state_ = std::vector<std::atomic<State>>(arrivals_.size());
     ownTurn_.resize(arrivals_.size());
-    parallelFor(arrivals_.size(), [&](std::size_t r) {
+    parallelFor(arrivals_.size(), kBlock, [&](std::size_t r) {
       const std::size_t step = steps.of[r];
       ownTurn_[r] = static_cast<std::uint16_t>(1 + (inner_ ? step : steps.count - 1 - step));
       turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : ownTurn_[r];
@@ -340,7 +341,7 @@ class Sweep {
     const std::int32_t n = annulus_.numberAt[tracer_.placeOf[r]];
     if (annulus_.irregular(n) < 0) return false;
     const auto& links = annulus_.links[n];
-    return std::ranges::find(links, wall_) != links.end();
+    return std::find(links.begin(), links.end(), wall_) != links.end();
   }
 
   /// Follows the trajectories of all ranks that next() gives until it gives -1.
@@ -656,7 +657,7 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
   result.innerPoint.resize(annulus.count());
   result.outerPoint.resize(annulus.count());
   const Eigen::Matrix3f toWorld = annulus.grid.direction.cast<float>();
-  parallelFor(annulus.count(), [&](std::size_t r) {
+  parallelFor(annulus.count(), kBlock, [&](std::size_t r) {
     const std::int32_t n = annulus.numberAt[field.placeOf[r]];
     const auto take = [&](const Arrival& arrival, double& distance, Eigen::Vector3f& point) {
       distance = arrival[3];
@@ -678,7 +679,8 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
 
 std::vector<double> thicknessOf(const Correspondence& correspondence) {
   std::vector<double> thickness(correspondence.innerDistance.size());
-  parallelFor(thickness.size(), [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
+  parallelFor(thickness.size(), 1 << 14,
+              [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
   return thickness;
 }
 

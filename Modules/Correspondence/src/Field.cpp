@@ -63,14 +63,14 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   options.maxStep = std::min(options.maxStep, 1.0);
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   const auto strides = annulus.strides();
-  parallelFor(annulus.count(), [&](std::size_t n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     if (annulus.irregular(static_cast<std::int32_t>(n)) < 0) return;
     for (int d = 0; d < 6; ++d) {
       const std::int32_t q = annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
       if (annulus.links[n][d] < 0 && annulus.numberAt[q] >= 0) cut[n] = 1;
     }
   });
-  if (std::ranges::find(cut, 1) != cut.end()) onCut = std::move(cut);
+  if (std::find(cut.begin(), cut.end(), 1) != cut.end()) onCut = std::move(cut);
   rankTissue();
   prepareCells();
   view_.cellAt = cellAt_.data();
@@ -904,7 +904,7 @@ Trace TrajectoryTracer::trace(const Point& start, double target) const {
 
 Point Path::at(double arc) const {
   if (points.size() == 1 || arc <= 0) return points.front();
-  const auto next = std::ranges::upper_bound(along, static_cast<float>(arc));
+  const auto next = std::upper_bound(along.begin(), along.end(), static_cast<float>(arc));
   if (next == along.end()) return points.back();
   const std::size_t k = next - along.begin();
   const double span = along[k] - along[k - 1];

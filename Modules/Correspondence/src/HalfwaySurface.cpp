@@ -4,6 +4,7 @@
 
 #include "Explica/Core/DisjointSets.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 

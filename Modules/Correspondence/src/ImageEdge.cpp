@@ -70,7 +70,7 @@ void markLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdge
   const auto beside = [&](std::int32_t wall) {
     return nearestOf(annulus, [&annulus, wall](std::int32_t n) {
       const auto& links = annulus.links[n];
-      return std::ranges::find(links, wall) != links.end();
+      return std::find(links.begin(), links.end(), wall) != links.end();
     });
   };
   const std::vector<std::int32_t> inner = beside(harmonic::kInner),
@@ -90,11 +90,11 @@ std::vector<std::uint8_t> nearImageEdge(const Annulus& annulus, const std::array
                                         const Correspondence& correspondence) {
   const std::vector<std::int32_t> nearest =
       nearestOf(annulus, [&](std::int32_t n) { return onEdge(annulus, n, axes); });
-  if (std::ranges::all_of(nearest, [](std::int32_t n) { return n < 0; })) return {};
+  if (std::all_of(nearest.begin(), nearest.end(), [](std::int32_t n) { return n < 0; })) return {};
   std::vector<std::uint8_t> marked(annulus.count(), 0);
   if (correspondence.missing > 0) markLeaving(annulus, nearest, correspondence, marked);
   const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
-  parallelFor(annulus.count(), [&](std::size_t index) {
+  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const double thickness = correspondence.thickness(n);
     if (nearest[n] < 0 || std::isnan(thickness)) return;

@@ -13,7 +13,7 @@ namespace explica::correspondence {
 
 std::vector<double> depthOf(const Correspondence& correspondence) {
   std::vector<double> depth(correspondence.innerDistance.size());
-  parallelFor(depth.size(), [&](std::size_t n) {
+  parallelFor(depth.size(), 1 << 14, [&](std::size_t n) {
     const double thickness = correspondence.thickness(n);
     depth[n] = thickness > 0 ? correspondence.innerDistance[n] / thickness : kNaN;
   });
@@ -49,7 +49,7 @@ std::vector<double> volumeDepthOf(const harmonic::Annulus& annulus,
     }
     return sum;
   };
-  parallelFor(annulus.count(), [&](std::size_t index) {
+  parallelFor(annulus.count(), 512, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     share[n] = kNaN;
     if (std::isnan(correspondence.thickness(n))) return;
@@ -62,7 +62,7 @@ std::vector<double> volumeDepthOf(const harmonic::Annulus& annulus,
 std::vector<int> layersOf(const std::vector<double>& depth, int layers) {
   if (layers < 1) throw InvalidInput("there must be at least one layer");
   std::vector<int> layer(depth.size());
-  parallelFor(depth.size(), [&](std::size_t n) {
+  parallelFor(depth.size(), 1 << 14, [&](std::size_t n) {
     layer[n] =
         std::isnan(depth[n]) ? 0 : std::clamp(static_cast<int>(depth[n] * layers) + 1, 1, layers);
   });

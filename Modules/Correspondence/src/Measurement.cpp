@@ -101,7 +101,8 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
     const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
     m.nearEdge = nearImageEdge(m.annulus, {true, true, !flat}, m.correspondence);
   }
-  m.cutVoxels = static_cast<std::size_t>(std::ranges::count(m.nearEdge, std::uint8_t{1}));
+  m.cutVoxels =
+      static_cast<std::size_t>(std::count(m.nearEdge.begin(), m.nearEdge.end(), std::uint8_t{1}));
   noteGaps(m, monitor);
   begin("layers");
   m.depth = depthOf(m.correspondence);

@@ -157,7 +157,7 @@ Fronts frontsFromInside(const Annulus& annulus) {
     }
   }
   fronts.nearest.resize(annulus.count());
-  parallelFor(annulus.count(), [&](std::size_t n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     fronts.nearest[n] = reach[n] == kUnreached ? -1 : footOf(reach[n]);
   });
   return fronts;
@@ -168,7 +168,7 @@ std::vector<Cut> meetingsOf(const Annulus& annulus, const Fronts& fronts, double
   constexpr std::size_t kBlock = 1 << 12;  // voxels a task
   const Vector& h = annulus.grid.spacing;
   std::vector<std::vector<Cut>> parts((annulus.count() + kBlock - 1) / kBlock);
-  parallelFor(annulus.count(), [&](std::size_t number) {
+  parallelFor(annulus.count(), kBlock, [&](std::size_t number) {
     const auto n = static_cast<std::int32_t>(number);
     const std::int32_t one = fronts.nearest[n];
     if (one < 0) return;

@@ -154,7 +154,7 @@ void number(Annulus& annulus, const std::vector<Code>& sites,
       annulus.place[n] = static_cast<std::int32_t>(p);
     }
   });
-  parallelFor(annulus.count(), [&](std::size_t n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < 6; ++d) {
       const bool cut = !cutBits.empty() && (cutBits[p] >> d & 1);
@@ -269,7 +269,7 @@ Contacts contactsOf(const Annulus& annulus, const std::vector<Code>& sites) {
     all.inner.insert(all.inner.end(), some.inner.begin(), some.inner.end());
     all.boundary += some.boundary;
   }
-  std::ranges::sort(all.inner);
+  std::sort(all.inner.begin(), all.inner.end());
   return all;
 }
 
@@ -281,7 +281,7 @@ std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus
   voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
   const auto strides = annulus.strides();
   const auto find = [&](std::size_t p) {
-    const auto at = std::ranges::lower_bound(voxels, p);
+    const auto at = std::lower_bound(voxels.begin(), voxels.end(), p);
     return at != voxels.end() && *at == p ? static_cast<std::int32_t>(at - voxels.begin()) : -1;
   };
   DisjointSets pieces(voxels.size());
@@ -296,7 +296,8 @@ std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus
   for (const std::size_t p : inner) ++faces[pieces.root(find(p))];
   std::vector<std::pair<std::size_t, std::size_t>> places;
   for (const auto& [root, count] : faces) places.emplace_back(count, voxels[root]);
-  std::ranges::stable_sort(places, [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   return places;
 }
 
@@ -332,7 +333,7 @@ void noteContacts(Annulus& annulus, const std::vector<Code>& sites, const Monito
   if (annulus.planar) return warnOfOpenRings(annulus, contacts, monitor);
   // Voxel faces have 3/2 of the area of a surface that has all directions; two boundaries.
   constexpr double kStaircase = 1.5;
-  const auto tissue = static_cast<double>(std::ranges::count(sites, kTissueCode));
+  const auto tissue = static_cast<double>(std::count(sites.begin(), sites.end(), kTissueCode));
   const double thickness = 2 * kStaircase * tissue / static_cast<double>(contacts.boundary);
   const double disc = kPi * thickness * thickness;  // voxel faces
   std::size_t faces = 0;
@@ -389,7 +390,7 @@ Annulus assemble(const Grid& grid, const Box& box, std::vector<Code> sites,
   number(annulus, sites, {}, {});
   if (options.boundary == BoundaryModel::Staircase) return annulus;
 
-  parallelFor(annulus.count(), [&](std::size_t index) {
+  parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const std::int32_t row = annulus.irregular(n);
     if (row < 0) return;
@@ -609,7 +610,7 @@ std::vector<Code> sitesIn(const Box& box, const Volume<Label>& labels, const Rol
 /// The inner boundary of sites, or the outer one.
 LabelBoundary boundaryOf(const std::vector<Code>& sites, const Box& box, bool outer, int axes) {
   std::vector<std::uint8_t> side(sites.size());
-  parallelFor(side.size(), [&](std::size_t p) {
+  parallelFor(side.size(), 1 << 16, [&](std::size_t p) {
     const auto site = static_cast<Site>(sites[p]);
     if (site == Site::Insulated) {
       side[p] = 255;
@@ -798,7 +799,7 @@ Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer
   const float outerSign = signOfInside(outer, "outer");
   Volume<float> innerLevel(grid), outerLevel(grid);
   Volume<Site> sites(grid, Site::Outer);
-  parallelFor(grid.voxelCount(), [&](std::size_t v) {
+  parallelFor(grid.voxelCount(), 1 << 16, [&](std::size_t v) {
     innerLevel[v] = innerSign * (inner[v] - static_cast<float>(levels.level));
     outerLevel[v] = outerSign * (outer[v] - static_cast<float>(levels.level));
     if (haveInsulated && insulated[v]) {
@@ -815,7 +816,7 @@ Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer
 Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   const auto strides = annulus.strides();
   std::vector<Code> sites(annulus.numberAt.size(), kTissueCode);
-  parallelFor(sites.size(), [&](std::size_t p) {
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t p) {
     switch (annulus.numberAt[p]) {
       case kInner:
         sites[p] = codeOf(Site::Inner);
@@ -832,7 +833,7 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   });
   std::vector<std::uint8_t> cutBits(sites.size(), 0), innerBits(sites.size(), 0);
   // Cuts that the annulus has already.
-  parallelFor(annulus.count(), [&](std::size_t n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t p = annulus.place[n];
     for (int d = 0; d < (annulus.planar ? 4 : 6); ++d) {
       const std::int32_t q = p + signOf(d) * strides[axisOf(d)], link = annulus.links[n][d];
@@ -856,7 +857,7 @@ Annulus withCuts(const Annulus& annulus, const std::vector<Cut>& cuts) {
   }
   Annulus result = annulus;
   number(result, sites, cutBits, innerBits);
-  parallelFor(annulus.count(), [&](std::size_t n) {
+  parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {
     const std::int32_t old = annulus.irregular(static_cast<std::int32_t>(n));
     if (old < 0) return;
     result.fractions[result.irregular(result.numberAt[annulus.place[n]])] = annulus.fractions[old];
@@ -957,8 +958,8 @@ VolumeOnDemand<Label> maskOf(const Annulus& annulus, const std::vector<std::int3
 
 Volume<std::uint8_t> maskOf(const Volume<Label>& labels, const std::vector<Label>& wanted) {
   Volume<std::uint8_t> volume(labels.grid, 0);
-  parallelFor(labels.size(), [&](std::size_t v) {
-    volume[v] = std::ranges::find(wanted, labels[v]) != wanted.end();
+  parallelFor(labels.size(), 1 << 16, [&](std::size_t v) {
+    volume[v] = std::find(wanted.begin(), wanted.end(), labels[v]) != wanted.end();
   });
   return volume;
 }

@@ -63,7 +63,7 @@ class Embedding {
   [[nodiscard]] std::vector<Eigen::Vector3f> gradient(const std::vector<double>& alpha,
                                                       const std::vector<double>& u) const {
     std::vector<Eigen::Vector3f> gradient(u.size());
-    parallelFor(u.size(), [&](std::size_t index) {
+    parallelFor(u.size(), kEmbeddingGrain, [&](std::size_t index) {
       const auto n = static_cast<std::int32_t>(index);
       const std::int32_t row = staircase_.irregular(n);
       const auto at = [&](int d) {
@@ -82,7 +82,7 @@ class Embedding {
   [[nodiscard]] std::vector<double> sample(const std::vector<double>& alpha,
                                            const std::vector<double>& u) const {
     std::vector<double> values(crossings_.size());
-    parallelFor(crossings_.size(), [&](std::size_t s) {
+    parallelFor(crossings_.size(), kEmbeddingGrain, [&](std::size_t s) {
       double sum = 0;
       for (int k = 0; k < 3; ++k) {
         const std::int32_t v = crossings_[s].vertex[k];

@@ -23,7 +23,7 @@ void finalSweep(const Annulus& annulus, const Stencil& stencil, const std::vecto
                 std::vector<double>& u) {
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, kInterpolantGrain, [&, begin, offset](std::size_t k) {
         const std::size_t n = begin + k;
         const auto& links = annulus.links[n];
         double sum = rhs[n];
@@ -43,7 +43,7 @@ void finalSweep(const Annulus& annulus, const Stencil& stencil, const std::vecto
 std::vector<Eigen::Vector3f> gradientOf(const Annulus& annulus, const std::vector<double>& u) {
   std::vector<Eigen::Vector3f> gradient(annulus.count());
   const Vector inverse = annulus.grid.spacing.cwiseInverse();
-  parallelFor(annulus.count(), [&](std::size_t index) {
+  parallelFor(annulus.count(), kInterpolantGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const auto& links = annulus.links[n];
     const std::int32_t row = annulus.irregular(n);
@@ -95,7 +95,7 @@ Interpolant solveInterpolant(const Annulus& annulus, const InterpolantOptions& o
   const Stencil stencil(annulus);
   Multigrid multigrid(annulus);
   std::vector<double> rhs(annulus.count(), 0);
-  parallelFor(annulus.count(), [&](std::size_t index) {
+  parallelFor(annulus.count(), kInterpolantGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const std::int32_t row = annulus.irregular(n);
     if (row < 0) return;

@@ -16,6 +16,7 @@ namespace explica::harmonic {
 namespace {
 
 constexpr std::int32_t kFewInRow = 64;  // links: counting those before is faster than halving
+constexpr std::size_t kBoundaryGrain = 1 << 12;  // elements a task
 // Nearest that the surface may come to a voxel's centre, in voxels.
 constexpr float kNearest = 0.01F;
 // Pull to the middle of a link where the net is smooth.  It only decides where no step is near:
@@ -148,7 +149,7 @@ void LabelBoundary::join(const std::vector<std::uint8_t>& side) {
   const std::array<std::int32_t, 3> rowStride = {0, 1, size_[1]};
   // Of two links whose chains meet in a face, the one with the lower axis writes for both, of equal
   // ones the lower.
-  parallelFor(low_.size(), [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const std::int32_t p = low_[link];
     const LinkPlace& at = at_[link];
     const int a = at[3];
@@ -189,8 +190,9 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
   const std::size_t count = low_.size();
   step_.assign(count, {0, 0, 0, 0});
   normal_.resize(count);
-  parallelFor(count, [&](std::size_t link) { step_[link][axisAt(link)] = theta_[link]; });
-  parallelFor(count, [&](std::size_t link) {
+  parallelFor(count, kBoundaryGrain,
+              [&](std::size_t link) { step_[link][axisAt(link)] = theta_[link]; });
+  parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
     const int a = axisAt(link);
     Quad along[2] = {{0, 0, 0, 0}, {0, 0, axes_ == 2 ? 1.0F : 0.0F, 0}};
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -217,7 +219,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
   std::vector<Quad> before(count);
   for (int pass = 0; pass < smoothings; ++pass) {
     before.swap(normal_);
-    parallelFor(count, [&](std::size_t link) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
       Quad n = before[link];
       for (const std::int32_t code : back_[link]) {
         if (code < 0) continue;
@@ -234,7 +236,7 @@ void LabelBoundary::findNormals(const std::vector<std::uint8_t>& side, int smoot
 
 void LabelBoundary::findCurvatures() {
   bend_.resize(low_.size());
-  parallelFor(low_.size(), [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const Quad& n = normal_[link];
     const float ownNormal = n[axisAt(link)];
     for (int chain = 0; chain < axes_ - 1; ++chain) {
@@ -267,13 +269,13 @@ void LabelBoundary::findCurvatures() {
 
 void LabelBoundary::findPull(const LabelTrust& trust) {
   std::vector<std::array<float, 2>> curvature(low_.size());
-  parallelFor(low_.size(), [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     for (int chain = 0; chain < axes_ - 1; ++chain) {
       curvature[link][chain] = curvatureOf(link, chain);
     }
   });
   std::vector<float> roughness(low_.size()), before(low_.size());
-  parallelFor(low_.size(), [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     float sum = 0;
     int found = 0;
     for (int slot = 0; slot < 2 * (axes_ - 1); ++slot) {
@@ -290,7 +292,7 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
   });
   for (int pass = 0; pass < kRoughnessSmoothings; ++pass) {
     before.swap(roughness);
-    parallelFor(low_.size(), [&](std::size_t link) {
+    parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
       float sum = before[link], count = 1;
       for (const std::int32_t code : back_[link]) {
         if (code < 0) continue;
@@ -300,7 +302,7 @@ void LabelBoundary::findPull(const LabelTrust& trust) {
       roughness[link] = sum / count;
     });
   }
-  parallelFor(low_.size(), [&](std::size_t link) {
+  parallelFor(low_.size(), kBoundaryGrain, [&](std::size_t link) {
     const float rough = (roughness[link] - trust.smooth) / (trust.rough - trust.smooth);
     pull_[link] = std::clamp(trust.pull * rough, kWeakPull, trust.pull);
   });
@@ -415,10 +417,11 @@ void LabelBoundary::relaxRows(int iterations) {
   const std::size_t count = low_.size();
   constexpr int kTerms = 2 * kChains * kReach;
   std::vector<Row<kTerms>> rows(count);
-  parallelFor(count, [&](std::size_t link) { rows[link] = rowOf<kChains, kReach>(link); });
+  parallelFor(count, kBoundaryGrain,
+              [&](std::size_t link) { rows[link] = rowOf<kChains, kReach>(link); });
   std::vector<float> before = theta_;
   const auto step = [&](float length, float momentum) {
-    parallelFor(count, [&](std::size_t link) {
+    parallelFor(count, kBoundaryGrain, [&](std::size_t link) {
       const Row<kTerms>& row = rows[link];
       const float from = theta_[link];
       float way[2] = {row.constant, row.own * from};

@@ -60,7 +60,7 @@ void apply(const Annulus& annulus, const Stencil& stencil, const std::vector<flo
 
 template <class F>
 void forAll(std::size_t count, const F& f) {
-  parallelFor(count, f);
+  parallelFor(count, kSolveGrain, f);
 }
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -91,7 +91,7 @@ std::vector<double> residualOf(const Annulus& annulus, const Stencil& stencil,
   std::vector<double> r(annulus.count());
   for (int colour = 0; colour < 2; ++colour) {
     forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
-      parallelFor(end - begin, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, kSolveGrain, [&, begin, offset](std::size_t k) {
         const std::size_t i = begin + k;
         double sum = rhs[i] - u[i];
         for (int d = 0; d < 6; ++d) {
@@ -169,8 +169,8 @@ class BiCGStab {
       // Breakdown: begin again from here.
       shadow_ = r_;
       rhoNext_ = norm_ * norm_;
-      std::ranges::fill(p_, 0);
-      std::ranges::fill(v_, 0);
+      std::fill(p_.begin(), p_.end(), 0);
+      std::fill(v_.begin(), v_.end(), 0);
       rho_ = alpha_ = omega_ = 1;
     }
     const double beta = rhoNext_ / rho_ * alpha_ / omega_, back = omega_ * vScale_;

@@ -7,6 +7,7 @@ namespace explica::harmonic {
 
 namespace {
 
+constexpr std::size_t kGrain = 1 << 13;  // elements a task
 constexpr int kCoarsestSweeps = 20;  // smoothings that stand for a solution on the coarsest grid
 
 }  // namespace
@@ -15,13 +16,13 @@ void MultigridHierarchy::smoothCoarse(MultigridLevel& l, bool fromZero) const {
   for (int colour = 0; colour < 2; ++colour) {
     const std::int32_t begin = colour == 0 ? 0 : l.red, end = colour == 0 ? l.red : l.count;
     if (fromZero && colour == 0) {
-      parallelFor(end - begin, [&, begin](std::size_t k) {
+      parallelFor(end - begin, kGrain, [&, begin](std::size_t k) {
         const std::size_t n = begin + k;
         l.x[n] = l.b[n] * l.inverseDiagonal[n];
       });
       continue;
     }
-    parallelFor(end - begin, [&, begin](std::size_t k) {
+    parallelFor(end - begin, kGrain, [&, begin](std::size_t k) {
       const std::size_t n = begin + k;
       float sum = l.b[n];
       for (std::int32_t e = l.start[n]; e < l.start[n + 1]; ++e) {
@@ -35,7 +36,7 @@ void MultigridHierarchy::smoothCoarse(MultigridLevel& l, bool fromZero) const {
 void MultigridHierarchy::prolong(int level, std::vector<float>& x) const {
   const MultigridTransfer& t = transfers[level];
   const std::vector<float>& e = coarse[level].x;
-  parallelFor(t.aggregate.size(), [&](std::size_t n) {
+  parallelFor(t.aggregate.size(), kGrain, [&](std::size_t n) {
     const auto& toward = t.toward[n];
     x[n] += t.ownWeight * e[t.aggregate[n]] + 0.25F * (e[toward[0]] + e[toward[1]] + e[toward[2]]);
   });
@@ -52,7 +53,7 @@ void MultigridHierarchy::solve(int level) {
   // After the sweep only even cells have a residual.
   const MultigridTransfer& t = transfers[level];
   MultigridLevel& next = coarse[level];
-  parallelFor(next.count, [&](std::size_t c) {
+  parallelFor(next.count, kGrain / 4, [&](std::size_t c) {
     float sum = 0;
     for (std::int32_t s = t.childStart[c]; s < t.childStart[c + 1]; ++s) {
       const std::int32_t n = t.child[s];
@@ -101,7 +102,7 @@ void MultigridHierarchy::restrictEven(const std::vector<float>& r, const std::ve
   forVoxelsOf(annulus, stencil, 0, ofStrand, ofIrregular);
   const MultigridTransfer& t = transfers[0];
   MultigridLevel& next = coarse[0];
-  parallelFor(next.count, [&](std::size_t c) {
+  parallelFor(next.count, kGrain / 4, [&](std::size_t c) {
     float sum = 0;
     for (std::int32_t s = t.childStart[c]; s < t.childStart[c + 1]; ++s) {
       if (t.child[s] < red) sum += evenResidual[t.child[s]];
@@ -111,7 +112,7 @@ void MultigridHierarchy::restrictEven(const std::vector<float>& r, const std::ve
 }
 
 void MultigridHierarchy::cycle(const std::vector<float>& r, std::vector<float>& e) {
-  parallelFor(annulus.runEnd[1], [&](std::size_t n) { e[n] = r[n]; });
+  parallelFor(annulus.runEnd[1], kGrain, [&](std::size_t n) { e[n] = r[n]; });
   sweep(1, r, e);
   if (!coarse.empty()) {
     restrictEven(r, e);

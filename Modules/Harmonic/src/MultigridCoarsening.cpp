@@ -10,8 +10,9 @@ namespace explica::harmonic {
 
 namespace {
 
-constexpr int kCoarsestSize = 60;  // cells; solved by sweeps
-constexpr int kMaxLevels = 16;     // of grids, each half as wide as the one before
+constexpr std::size_t kCoarseningGrain = 1 << 13;  // elements a task
+constexpr int kCoarsestSize = 60;                  // cells; solved by sweeps
+constexpr int kMaxLevels = 16;                     // of grids, each half as wide as the one before
 // Axes are coarsened together if their spacings differ by less than this; so smoothing stays good.
 constexpr double kNearlyIsotropic = 1.5;
 
@@ -117,7 +118,7 @@ void Coarsener::sortByBlock() {
   blocks_.size = size;
   blocks_.start.assign(blocks + 1, 0);
   blocks_.of.resize(fineCount_);
-  parallelFor(fineCount_, [&](std::size_t n) {
+  parallelFor(fineCount_, kCoarseningGrain, [&](std::size_t n) {
     const Subscripts b = parentOf(h_.blockOf(level_, static_cast<std::int32_t>(n)));
     blocks_.of[n] = static_cast<std::int32_t>(
         b[0] + stride * (b[1] + static_cast<std::size_t>(size[1]) * b[2]));
@@ -248,7 +249,7 @@ void Coarsener::placeInterpolation() {
   for (int a = 0; a < 3; ++a) halved += t_.coarsened[a];
   t_.ownWeight = 1 - 0.25F * static_cast<float>(halved);
   t_.toward.resize(fineCount_);
-  parallelFor(fineCount_, [&](std::size_t index) {
+  parallelFor(fineCount_, kCoarseningGrain, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     for (int a = 0; a < 3; ++a) t_.toward[n][a] = t_.coarsened[a] ? towardAt(n, a) : next_.count;
   });
@@ -334,7 +335,7 @@ void Coarsener::sumBoundary() {
   next_.boundaryConductance.assign(number, {0, 0, 0});
   next_.x.resize(number + 1);
   next_.b.resize(number);
-  parallelFor(number, [&](std::size_t c) {
+  parallelFor(number, 1 << 11, [&](std::size_t c) {
     double diagonal = 0;
     for (std::int32_t e = next_.start[c]; e < next_.start[c + 1]; ++e) {
       diagonal += next_.coefficient[e];

@@ -5,6 +5,7 @@
 #include "Explica/Harmonic/Interpolant.h"
 #include "Stencil.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>

@@ -198,7 +198,7 @@ Phantom makePhantom(PhantomKind kind, const PhantomOptions& options) {
     phantom.labelNames.emplace_back("insulated", 4);
   }
   const double equator = kVentricleFocal * kVentricleOuter;
-  parallelFor(grid.voxelCount(), [&](std::size_t v) {
+  parallelFor(grid.voxelCount(), 1 << 14, [&](std::size_t v) {
     const auto s = grid.subscripts(v);
     const Point x = grid.toWorld(Vector(s[0], s[1], s[2]));
     if (phantom.exact.insulated && phantom.exact.insulated(x)) {
@@ -221,7 +221,7 @@ PhantomAnswers answersOf(const Phantom& phantom) {
   answers.u = answers.thickness = answers.innerDistance = answers.outerDistance =
       Volume<float>(grid, 0);
   answers.innerPoint = answers.outerPoint = Volume<Eigen::Vector3f>(grid, Eigen::Vector3f::Zero());
-  parallelFor(grid.voxelCount(), [&](std::size_t v) {
+  parallelFor(grid.voxelCount(), 1 << 12, [&](std::size_t v) {
     if (phantom.labels[v] != 2) {
       answers.u[v] = phantom.innerLevel[v] <= 0 ? 0.0F : 1.0F;
       return;

@@ -50,7 +50,7 @@ Stencil::Stencil(const Annulus& annulus) {
         strands[colour] = strandsOf(annulus, begin, end);
         return;
       }
-      parallelFor(end - begin, [&, begin, offset](std::size_t k) {
+      parallelFor(end - begin, 4096, [&, begin, offset](std::size_t k) {
         const std::size_t row = k + offset;
         const auto& links = annulus.links[begin + k];
         const auto& fractions = annulus.fractions[row];

@@ -44,11 +44,12 @@ void forRunsOf(const Annulus& annulus, int colour, const Body& body) {
 template <class OfStrand, class OfIrregular>
 void forVoxelsOf(const Annulus& annulus, const Stencil& stencil, int colour,
                  const OfStrand& ofStrand, const OfIrregular& ofIrregular) {
+  constexpr std::size_t kStrandGrain = 1 << 10, kIrregularGrain = 1 << 13;  // elements a task
   const std::vector<Strand>& strands = stencil.strands[colour];
-  parallelFor(strands.size(), [&](std::size_t s) { ofStrand(strands[s]); });
+  parallelFor(strands.size(), kStrandGrain, [&](std::size_t s) { ofStrand(strands[s]); });
   forRunsOf(annulus, colour, [&](std::int32_t begin, std::int32_t end, std::int32_t offset) {
     if (offset < 0) return;
-    parallelFor(end - begin,
+    parallelFor(end - begin, kIrregularGrain,
                 [&, begin, offset](std::size_t k) { ofIrregular(begin + k, offset + k); });
   });
 }

@@ -125,7 +125,7 @@ BeatingVentricle beatingVentricle(const harmonic::PhantomOptions& size,
     frame.exact = harmonic::exactVentricle(kFocal, inner, outer, kBase);
     frame.thickness = columnMeans(frame.exact, inner, outer);
     frame.labels = Volume<Label>(grid, 0);
-    parallelFor(grid.voxelCount(), [&](std::size_t v) {
+    parallelFor(grid.voxelCount(), 1 << 14, [&](std::size_t v) {
       const auto s = grid.subscripts(v);
       const Point x = beat.toHeart(grid.toWorld(Vector(s[0], s[1], s[2])));
       frame.labels[v] = labelAt(x, frame.exact, outer);

@@ -67,7 +67,7 @@ Cortex makeCortex(const CortexOptions& o) {
   cortex.level = Volume<float>(grid, 0.0f);
   cortex.image = Volume<float>(grid, 0.0f);
   const geometry::FaceTree tree(cortex.white);
-  parallelFor(grid.voxelCount(), [&](std::size_t v) {
+  parallelFor(grid.voxelCount(), 1024, [&](std::size_t v) {
     const auto [i, j, k] = grid.subscripts(v);
     cortex.level[v] = static_cast<float>(signedDistance(tree, grid.toWorld(Vector(i, j, k))));
   });

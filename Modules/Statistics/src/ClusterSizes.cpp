@@ -31,7 +31,8 @@ struct LogGrid {
     for (int i = 0; i < kCells; ++i) {
       const int begin = std::max(0, -i - shift), end = std::min(kCells, kCells - i - shift);
       for (int j = begin; j < end; ++j) {
-        sum[i + j + shift] += density[i] * other[j] * step;
+        sum[static_cast<std::size_t>(i + j + shift)] +=
+            density[static_cast<std::size_t>(i)] * other[static_cast<std::size_t>(j)] * step;
       }
     }
     density = std::move(sum);
@@ -42,9 +43,10 @@ std::vector<double> logDensity(const LogGrid& grid, const ChiPower& v) {
   std::vector<double> density(kCells);
   for (int i = 0; i < kCells; ++i) {
     const double x = grid.at(i) / v.power + std::log(v.nu);
-    density[i] = std::exp(v.nu / 2 * x - std::exp(x) / 2 - v.nu / 2 * std::log(2.0) -
-                          std::lgamma(v.nu / 2)) /
-                 std::abs(v.power);
+    density[static_cast<std::size_t>(i)] =
+        std::exp(v.nu / 2 * x - std::exp(x) / 2 - v.nu / 2 * std::log(2.0) -
+                 std::lgamma(v.nu / 2)) /
+        std::abs(v.power);
   }
   return density;
 }
@@ -102,7 +104,7 @@ LogGrid gridFor(const FieldKind& kind, double roughnessDf, int d) {
 ClusterSizes::ClusterSizes(double threshold, const FieldKind& kind, double resels,
                            double roughnessDf, int dimension) {
   const auto densities = eulerDensities(threshold, kind);
-  const double rate = densities[dimension];
+  const double rate = densities[static_cast<std::size_t>(dimension)];
   expected_ = resels * rate;
   const double mean = densities[0] / rate;  // resels of a cluster
   if (std::isinf(kind.df) && std::isinf(roughnessDf)) {
@@ -112,7 +114,7 @@ ClusterSizes::ClusterSizes(double threshold, const FieldKind& kind, double resel
   }
   LogGrid grid = gridFor(kind, roughnessDf, dimension);
   for (int i = 0; i < kCells; ++i) {
-    grid.density[i] = heightDensity(grid.at(i), kind.df, dimension);
+    grid.density[static_cast<std::size_t>(i)] = heightDensity(grid.at(i), kind.df, dimension);
   }
   double factor = meanHeight(kind.df, dimension);
   for (const ChiPower& v : factorsOf(kind, roughnessDf, dimension)) {

@@ -53,10 +53,11 @@ std::pair<double, double> posterior(double mean, double variance, double n, cons
 }
 
 std::vector<double> countsOf(const std::vector<int>& sites) {
-  std::vector<double> counts(static_cast<std::size_t>(1 + *std::ranges::max_element(sites)));
-  for (const int s : sites) ++counts[s];
+  std::vector<double> counts(
+      static_cast<std::size_t>(1 + *std::max_element(sites.begin(), sites.end())));
+  for (const int s : sites) ++counts[static_cast<std::size_t>(s)];
   if (counts.size() < 2) throw InvalidInput("--site combat: there is one site");
-  if (*std::ranges::min_element(counts) < 2) {
+  if (*std::min_element(counts.begin(), counts.end()) < 2) {
     throw InvalidInput("--site combat: a site has one person, so that its spread is not known");
   }
   return counts;
@@ -75,7 +76,7 @@ Standardised standardise(const Eigen::MatrixXd& values, const Eigen::MatrixXd& c
   const Eigen::Index n = values.rows();
   const auto s = static_cast<Eigen::Index>(counts.size());
   Eigen::MatrixXd design = Eigen::MatrixXd::Zero(n, s + covariates.cols());
-  for (Eigen::Index i = 0; i < n; ++i) design(i, sites[i]) = 1;
+  for (Eigen::Index i = 0; i < n; ++i) design(i, sites[static_cast<std::size_t>(i)]) = 1;
   design.rightCols(covariates.cols()) = covariates;
   Standardised result;
   for (Eigen::Index v = 0; v < values.cols(); ++v) {
@@ -99,11 +100,11 @@ SiteMoments momentsOf(const Eigen::MatrixXd& z, const std::vector<int>& sites,
   const Eigen::Map<const Eigen::ArrayXd> n(counts.data(), s);
   SiteMoments moments{Eigen::MatrixXd::Zero(s, z.cols()), Eigen::MatrixXd::Zero(s, z.cols())};
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    moments.mean.row(sites[i]) += z.row(i);
+    moments.mean.row(sites[static_cast<std::size_t>(i)]) += z.row(i);
   }
   moments.mean.array().colwise() /= n;
   for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    const int site = sites[i];
+    const int site = sites[static_cast<std::size_t>(i)];
     moments.variance.row(site) += (z.row(i) - moments.mean.row(site)).cwiseAbs2();
   }
   moments.variance.array().colwise() /= n - 1;
@@ -127,16 +128,16 @@ CombatResult combat(Eigen::MatrixXd& values, const Eigen::MatrixXd& covariates,
   for (Eigen::Index site = 0; site < s; ++site) {
     const Prior prior = priorOf(moments.mean.row(site), moments.variance.row(site));
     for (Eigen::Index w = 0; w < places; ++w) {
-      const auto [shift, scale] =
-          posterior(moments.mean(site, w), moments.variance(site, w), counts[site], prior);
-      result.shift(site, standard.places[w]) = shift;
-      result.scale(site, standard.places[w]) = std::sqrt(scale);
+      const auto [shift, scale] = posterior(moments.mean(site, w), moments.variance(site, w),
+                                            counts[static_cast<std::size_t>(site)], prior);
+      result.shift(site, standard.places[static_cast<std::size_t>(w)]) = shift;
+      result.scale(site, standard.places[static_cast<std::size_t>(w)]) = std::sqrt(scale);
     }
   }
   for (Eigen::Index w = 0; w < places; ++w) {
-    const Eigen::Index v = standard.places[w];
+    const Eigen::Index v = standard.places[static_cast<std::size_t>(w)];
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
-      const int site = sites[i];
+      const int site = sites[static_cast<std::size_t>(i)];
       values(i, v) = standard.fitted(i, w) + standard.spread[w] *
                                                  (standard.z(i, w) - result.shift(site, v)) /
                                                  result.scale(site, v);

@@ -85,7 +85,7 @@ class Names {
   /// p x k: one column of weights, or one for each column of a term.
   [[nodiscard]] Eigen::MatrixXd weightsOf(const std::string& name) const {
     const auto p = static_cast<Eigen::Index>(design_.columns.size());
-    const auto column = std::ranges::find(design_.columns, name);
+    const auto column = std::find(design_.columns.begin(), design_.columns.end(), name);
     if (column != design_.columns.end()) {
       return Eigen::VectorXd::Unit(p, column - design_.columns.begin());
     }
@@ -102,7 +102,7 @@ class Names {
     const auto p = static_cast<Eigen::Index>(design_.columns.size());
     Eigen::MatrixXd weights(p, 0);
     for (Eigen::Index c = 0; c < p; ++c) {
-      if (design_.termOf[c] != term) continue;
+      if (design_.termOf[static_cast<std::size_t>(c)] != term) continue;
       weights.conservativeResize(p, weights.cols() + 1);
       weights.rightCols(1) = Eigen::VectorXd::Unit(p, c);
     }

@@ -24,7 +24,7 @@ std::vector<std::string> columnsUsed(const Formula& formula) {
   std::vector<std::string> used;
   for (const Term& term : formula.terms) {
     for (const std::string& column : term) {
-      if (std::ranges::find(used, column) == used.end()) used.push_back(column);
+      if (std::find(used.begin(), used.end(), column) == used.end()) used.push_back(column);
     }
   }
   return used;
@@ -35,8 +35,8 @@ void keepCompleteRows(Design& design, const Formula& formula, const Table& table
   for (const std::string& column : columnsUsed(formula)) needed.push_back(table.at(column));
   if (formula.randomIntercept) needed.push_back(table.at(*formula.randomIntercept));
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
-    const bool complete =
-        std::ranges::none_of(needed, [&](std::size_t c) { return isMissing(table.rows[r][c]); });
+    const bool complete = std::none_of(needed.begin(), needed.end(),
+                                       [&](std::size_t c) { return isMissing(table.rows[r][c]); });
     (complete ? design.rows : design.dropped).push_back(r);
   }
 }
@@ -48,7 +48,7 @@ std::optional<Eigen::VectorXd> numbersOf(const Table& table, std::size_t column,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto value = numberIn(table.rows[rows[i]][column]);
     if (!value) return {};
-    values[i] = *value;
+    values[static_cast<Eigen::Index>(i)] = *value;
   }
   return values;
 }
@@ -99,25 +99,25 @@ class Coder {
   }
 
   Factor& factorOf(const std::string& column) {
-    return *std::ranges::find_if(design_.factors,
-                                 [&](const Factor& f) { return f.name == column; });
+    return *std::find_if(design_.factors.begin(), design_.factors.end(),
+                         [&](const Factor& f) { return f.name == column; });
   }
 
   /// Whether the model spans the term without this column, so that a difference from the first
   /// level is what is left to say.
   bool hasRest(const Term& term, const std::string& column) const {
     Term rest;
-    std::ranges::copy_if(term, std::back_inserter(rest),
-                         [&](const std::string& c) { return c != column; });
+    std::copy_if(term.begin(), term.end(), std::back_inserter(rest),
+                 [&](const std::string& c) { return c != column; });
     if (!rest.empty()) {
-      return std::ranges::any_of(formula_.terms, [&](const Term& other) {
-        return std::ranges::is_permutation(rest, other);
+      return std::any_of(formula_.terms.begin(), formula_.terms.end(), [&](const Term& other) {
+        return std::is_permutation(rest.begin(), rest.end(), other.begin(), other.end());
       });
     }
     if (formula_.intercept) return true;
-    const auto first = std::ranges::find_if(formula_.terms, [&](const Term& t) {
-      return t.size() == 1 && levels_.contains(t.front());
-    });
+    const auto first =
+        std::find_if(formula_.terms.begin(), formula_.terms.end(),
+                     [&](const Term& t) { return t.size() == 1 && levels_.contains(t.front()); });
     return first == formula_.terms.end() || first->front() != column;
   }
 
@@ -130,7 +130,7 @@ class Coder {
     for (std::size_t l = difference ? 1 : 0; l < levels.names.size(); ++l) {
       Eigen::VectorXd indicator(static_cast<Eigen::Index>(levels.of.size()));
       for (std::size_t i = 0; i < levels.of.size(); ++i) {
-        indicator[i] = levels.of[i] == static_cast<int>(l) ? 1 : 0;
+        indicator[static_cast<Eigen::Index>(i)] = levels.of[i] == static_cast<int>(l) ? 1 : 0;
       }
       coded.columns.push_back(std::move(indicator));
       coded.names.push_back(column + "[" + levels.names[l] + "]");
@@ -171,7 +171,7 @@ void requireFullRank(const Design& design) {
       rest -= basis.leftCols(c) * (basis.leftCols(c).transpose() * rest);
     }
     if (!(rest.norm() > kDependent * length)) {
-      throw InvalidInput("column '" + design.columns[c] +
+      throw InvalidInput("column '" + design.columns[static_cast<std::size_t>(c)] +
                          "' of the design is a sum of columns before it, so that its effect cannot "
                          "be told from theirs; leave one of them out of the model");
     }
@@ -184,7 +184,7 @@ void addColumns(Design& design, const Coded& coded) {
       static_cast<Eigen::Index>(design.rows.size()),
       design.matrix.cols() + static_cast<Eigen::Index>(coded.columns.size()));
   for (std::size_t j = 0; j < coded.columns.size(); ++j) {
-    design.matrix.col(design.columns.size()) = coded.columns[j];
+    design.matrix.col(static_cast<Eigen::Index>(design.columns.size())) = coded.columns[j];
     design.columns.push_back(coded.names[j]);
     design.termOf.push_back(static_cast<int>(design.terms.size()) - 1);
   }
@@ -198,7 +198,8 @@ Levels levelsOf(const Table& table, std::string_view column, const std::vector<s
   for (const std::size_t r : rows) names.insert(table.rows[r][place]);
   Levels levels{{names.begin(), names.end()}, {}};
   for (const std::size_t r : rows) {
-    const auto found = std::ranges::lower_bound(levels.names, table.rows[r][place]);
+    const auto found =
+        std::lower_bound(levels.names.begin(), levels.names.end(), table.rows[r][place]);
     levels.of.push_back(static_cast<int>(found - levels.names.begin()));
   }
   return levels;

@@ -19,7 +19,8 @@ Eigen::VectorXd falseDiscoveryRate(const Eigen::VectorXd& p, const Eigen::Vector
   for (Eigen::Index v = 0; v < p.size(); ++v) {
     if (!std::isnan(p[v])) order.push_back(v);
   }
-  std::ranges::stable_sort(order, [&](Eigen::Index a, Eigen::Index b) { return p[a] < p[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b) { return p[a] < p[b]; });
   std::vector<double> upTo;
   double sum = 0;
   for (const Eigen::Index v : order) upTo.push_back(sum += weights[v]);

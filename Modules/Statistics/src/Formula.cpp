@@ -28,8 +28,8 @@ class Reader {
       if (!minus) expect('+', "between terms");
       summand(minus);
     }
-    std::ranges::stable_sort(formula_.terms,
-                             [](const Term& a, const Term& b) { return a.size() < b.size(); });
+    std::stable_sort(formula_.terms.begin(), formula_.terms.end(),
+                     [](const Term& a, const Term& b) { return a.size() < b.size(); });
     return formula_;
   }
 
@@ -130,14 +130,14 @@ class Reader {
   }
 
   static void insert(Term& term, const std::string& column) {
-    if (std::ranges::find(term, column) == term.end()) term.push_back(column);
+    if (std::find(term.begin(), term.end(), column) == term.end()) term.push_back(column);
   }
 
   void addTerm(const Term& term) {
     const auto same = [&](const Term& other) {
-      return std::ranges::is_permutation(term, other);
+      return std::is_permutation(term.begin(), term.end(), other.begin(), other.end());
     };
-    if (std::ranges::none_of(formula_.terms, same)) {
+    if (std::none_of(formula_.terms.begin(), formula_.terms.end(), same)) {
       formula_.terms.push_back(term);
     }
   }

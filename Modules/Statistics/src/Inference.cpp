@@ -93,9 +93,10 @@ void findAllClusters(const ContrastMaps& maps, const Contrast& contrast,
       inference.clusters.push_back(judge.judge(c, negative, maps.statistic[c.peak]));
     }
   }
-  std::ranges::stable_sort(inference.clusters, [](const FoundCluster& a, const FoundCluster& b) {
-    return a.cluster.extent > b.cluster.extent;
-  });
+  std::stable_sort(inference.clusters.begin(), inference.clusters.end(),
+                   [](const FoundCluster& a, const FoundCluster& b) {
+                     return a.cluster.extent > b.cluster.extent;
+                   });
 }
 
 Eigen::VectorXd fieldP(const ContrastMaps& maps, const Contrast& contrast,
@@ -130,20 +131,21 @@ Smoothness smoothnessOf(const PlaceSurface& surface, const Eigen::VectorXd& roug
   for (Eigen::Index e = 0; e < roughness.size(); ++e) {
     if (!std::isnan(roughness[e])) continue;
     // Of an edge without roughness one end at least has no residuals; which, its other edges tell.
-    known[surface.topology.edges(e, 0)] = false;
-    known[surface.topology.edges(e, 1)] = false;
+    known[static_cast<std::size_t>(surface.topology.edges(e, 0))] = false;
+    known[static_cast<std::size_t>(surface.topology.edges(e, 1))] = false;
   }
   for (Eigen::Index e = 0; e < roughness.size(); ++e) {
     if (std::isnan(roughness[e])) continue;
-    known[surface.topology.edges(e, 0)] = true;
-    known[surface.topology.edges(e, 1)] = true;
+    known[static_cast<std::size_t>(surface.topology.edges(e, 0))] = true;
+    known[static_cast<std::size_t>(surface.topology.edges(e, 1))] = true;
   }
   Smoothness smoothness;
   smoothness.resels = reselsOf(surface.mesh.faces, surface.topology, roughness, known);
   double area = 0;
   for (Eigen::Index f = 0; f < surface.mesh.faceCount(); ++f) {
     bool inside = true;
-    for (int k = 0; k < 3; ++k) inside = inside && known[surface.mesh.faces(f, k)];
+    for (int k = 0; k < 3; ++k)
+      inside = inside && known[static_cast<std::size_t>(surface.mesh.faces(f, k))];
     if (!inside) continue;
     const Vector a = surface.mesh.corner(f, 1) - surface.mesh.corner(f, 0);
     area += a.cross(surface.mesh.corner(f, 2) - surface.mesh.corner(f, 0)).norm() / 2;

@@ -339,18 +339,19 @@ PermutationResult permute(const Design& design, const Contrast& contrast,
 
 double familyWiseP(const std::vector<float>& maxima, double value) {
   const double limit = std::abs(value) * (1 - kRoundOff);
-  const auto reached = std::ranges::count_if(maxima, [&](float m) { return m >= limit; });
+  const auto reached =
+      std::count_if(maxima.begin(), maxima.end(), [&](float m) { return m >= limit; });
   return static_cast<double>(reached) / static_cast<double>(maxima.size());
 }
 
 Eigen::VectorXd familyWiseP(const std::vector<float>& maxima, const Eigen::VectorXd& values) {
   std::vector<float> ascending = maxima;
-  std::ranges::sort(ascending);
+  std::sort(ascending.begin(), ascending.end());
   return values.unaryExpr([&](double value) {
     if (value == 0) return kNaN;
     const double limit = std::abs(value) * (1 - kRoundOff);
-    const auto first =
-        std::ranges::lower_bound(ascending, limit, [](float m, double least) { return m < least; });
+    const auto first = std::lower_bound(ascending.begin(), ascending.end(), limit,
+                                        [](float m, double least) { return m < least; });
     return static_cast<double>(ascending.end() - first) / static_cast<double>(ascending.size());
   });
 }

@@ -39,9 +39,9 @@ std::vector<bool> variesWithin(const Eigen::MatrixXd& design, const std::vector<
   for (Eigen::Index c = 0; c < design.cols(); ++c) {
     std::vector<double> first(static_cast<std::size_t>(count), kNaN);
     for (Eigen::Index i = 0; i < design.rows(); ++i) {
-      double& known = first[groups[static_cast<std::size_t>(i)]];
+      double& known = first[static_cast<std::size_t>(groups[static_cast<std::size_t>(i)])];
       if (std::isnan(known)) known = design(i, c);
-      if (known != design(i, c)) varies[c] = true;
+      if (known != design(i, c)) varies[static_cast<std::size_t>(c)] = true;
     }
   }
   return varies;
@@ -53,9 +53,9 @@ Rows rowsOf(const Eigen::MatrixXd& design, const std::vector<int>& groups,
   rows.design.resize(static_cast<Eigen::Index>(people.size()), design.cols());
   std::vector<int> number(groups.size(), -1);
   for (std::size_t i = 0; i < people.size(); ++i) {
-    rows.design.row(i) = design.row(people[i]);
+    rows.design.row(static_cast<Eigen::Index>(i)) = design.row(people[i]);
     if (groups.empty()) continue;
-    int& known = number[groups[static_cast<std::size_t>(people[i])]];
+    int& known = number[static_cast<std::size_t>(groups[static_cast<std::size_t>(people[i])])];
     if (known < 0) known = rows.groupCount++;
     rows.groups.push_back(known);
   }
@@ -71,7 +71,7 @@ double dfOf(const Contrast& contrast, const Rows& rows) {
   double within = 0;
   bool onlyBetween = true;
   for (Eigen::Index c = 0; c < rows.design.cols(); ++c) {
-    if (!rows.within[c]) continue;
+    if (!rows.within[static_cast<std::size_t>(c)]) continue;
     ++within;
     if (!contrast.weights.row(c).isZero()) onlyBetween = false;
   }
@@ -141,7 +141,7 @@ struct PlaceModel::Implementation {
     if (rows.design.colPivHouseholderQr().rank() < rows.design.cols()) return;
     Eigen::VectorXd values(rows.design.rows());
     for (std::size_t i = 0; i < people.size(); ++i) {
-      values[i] = y[people[i]];
+      values[static_cast<Eigen::Index>(i)] = y[people[i]];
     }
     write(solve(rows, values), rows, v, maps);
   }
@@ -193,7 +193,7 @@ PlaceModel::~PlaceModel() = default;
 
 void PlaceModel::fit(const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps) const {
   parallelFor(static_cast<std::size_t>(values.cols()), kGrain, [&](std::size_t b) {
-    const Eigen::VectorXd y = values.col(b);
+    const Eigen::VectorXd y = values.col(static_cast<Eigen::Index>(b));
     std::vector<Eigen::Index> people;
     for (Eigen::Index i = 0; i < y.size(); ++i) {
       if (std::isfinite(y[i])) people.push_back(i);

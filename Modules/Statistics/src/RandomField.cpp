@@ -19,7 +19,8 @@ constexpr double kTailBegins = 3;
 constexpr double kTailSteps = 48;
 
 bool allIn(const std::vector<bool>& mask, const Faces& faces, Eigen::Index f) {
-  return mask[faces(f, 0)] && mask[faces(f, 1)] && mask[faces(f, 2)];
+  return mask[static_cast<std::size_t>(faces(f, 0))] &&
+         mask[static_cast<std::size_t>(faces(f, 1))] && mask[static_cast<std::size_t>(faces(f, 2))];
 }
 
 std::array<double, 3> densitiesOfT(double t, double df) {
@@ -65,10 +66,11 @@ Resels reselsOf(const Faces& faces, const geometry::MeshTopology& topology,
                 const Eigen::VectorXd& roughness, const std::vector<bool>& mask) {
   Resels resels;
   resels.perVertex = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(mask.size()));
-  resels.places = static_cast<double>(std::ranges::count(mask, true));
+  resels.places = static_cast<double>(std::count(mask.begin(), mask.end(), true));
   double euler = resels.places, halfLength = 0, area = 0;
   for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
-    if (!mask[topology.edges(e, 0)] || !mask[topology.edges(e, 1)]) {
+    if (!mask[static_cast<std::size_t>(topology.edges(e, 0))] ||
+        !mask[static_cast<std::size_t>(topology.edges(e, 1))]) {
       continue;
     }
     euler -= 1;

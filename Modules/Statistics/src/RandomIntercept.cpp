@@ -33,17 +33,17 @@ class Profile {
         p_(x.cols()),
         squares_(x.transpose() * x),
         values_(residuals.squaredNorm()) {
-    const int count = 1 + *std::ranges::max_element(groups);
+    const int count = 1 + *std::max_element(groups.begin(), groups.end());
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(p_, count);
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(count);
     std::vector<int> sizes(static_cast<std::size_t>(count), 0);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const int g = groups[i];
+      const int g = groups[static_cast<std::size_t>(i)];
       rows.col(g) += x.row(i).transpose();
       sums[g] += residuals[i];
-      ++sizes[g];
+      ++sizes[static_cast<std::size_t>(g)];
     }
-    for (int g = 0; g < count; ++g) add(sizes[g], rows.col(g), sums[g]);
+    for (int g = 0; g < count; ++g) add(sizes[static_cast<std::size_t>(g)], rows.col(g), sums[g]);
   }
 
   /// At a ratio: -2 log restricted likelihood, up to a constant; fills the fit.

@@ -41,7 +41,7 @@ std::vector<std::vector<std::int32_t>> members(Eigen::Index people,
                                                const std::vector<int>& blocks) {
   std::map<int, std::vector<std::int32_t>> found;
   for (std::int32_t i = 0; i < people; ++i) {
-    found[blocks.empty() ? 0 : blocks[i]].push_back(i);
+    found[blocks.empty() ? 0 : blocks[static_cast<std::size_t>(i)]].push_back(i);
   }
   std::vector<std::vector<std::int32_t>> lists;
   for (auto& [block, list] : found) lists.push_back(std::move(list));
@@ -56,7 +56,7 @@ std::vector<std::int32_t> decode(std::size_t n, std::uint64_t& code) {
   for (std::size_t k = n; k > 0; --k) {
     const auto place = static_cast<std::ptrdiff_t>(code % k);
     code /= k;
-    order.push_back(left[place]);
+    order.push_back(left[static_cast<std::size_t>(place)]);
     left.erase(left.begin() + place);
   }
   return order;
@@ -115,7 +115,7 @@ double Shuffler::possible() const {
 void Shuffler::draw(std::int64_t number, std::span<std::int32_t> order,
                     std::span<float> signs) const {
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::fill(signs, 1.0F);
+  std::fill(signs.begin(), signs.end(), 1.0F);
   if (number == 0) return;
   auto code = static_cast<std::uint64_t>(number);
   Stream stream(seed_, code);
@@ -124,15 +124,15 @@ void Shuffler::draw(std::int64_t number, std::span<std::int32_t> order,
       for (const Unit& unit : set) {
         const bool flip = exhaustive_ ? code % 2 == 1 : stream.below(2) == 1;
         code /= 2;
-        for (const std::int32_t i : unit) signs[i] = flip ? -1.0F : 1.0F;
+        for (const std::int32_t i : unit) signs[static_cast<std::size_t>(i)] = flip ? -1.0F : 1.0F;
       }
       continue;
     }
     const auto from = exhaustive_ ? decode(set.size(), code) : shuffled(set.size(), stream);
     for (std::size_t u = 0; u < set.size(); ++u) {
-      const Unit& source = set[from[u]];
+      const Unit& source = set[static_cast<std::size_t>(from[u])];
       for (std::size_t i = 0; i < source.size(); ++i) {
-        order[set[u][i]] = source[i];
+        order[static_cast<std::size_t>(set[u][i])] = source[i];
       }
     }
   }

@@ -54,7 +54,7 @@ void requireDistinct(const Table& table) {
 }  // namespace
 
 std::optional<std::size_t> Table::find(std::string_view column) const {
-  const auto place = std::ranges::find(columns, column);
+  const auto place = std::find(columns.begin(), columns.end(), column);
   if (place == columns.end()) return {};
   return static_cast<std::size_t>(place - columns.begin());
 }
@@ -99,7 +99,7 @@ Table parseTable(std::string_view text, std::string name) {
 bool isMissing(std::string_view cell) {
   static constexpr std::array<std::string_view, 8> kWords = {"",    "n/a", "N/A", "NA",
                                                              "NaN", "nan", "na",  "null"};
-  return std::ranges::find(kWords, cell) != kWords.end();
+  return std::find(kWords.begin(), kWords.end(), cell) != kWords.end();
 }
 
 std::optional<double> numberIn(std::string_view cell) {
@@ -115,8 +115,9 @@ Table readTable(const std::string& path) {
 }
 
 bool isNumeric(const Table& table, std::size_t column) {
-  return std::ranges::all_of(
-      table.rows, [&](const auto& row) { return isMissing(row[column]) || numberIn(row[column]); });
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    return isMissing(row[column]) || numberIn(row[column]);
+  });
 }
 
 Eigen::MatrixXd numbersIn(const Table& table, const std::vector<std::size_t>& rows,

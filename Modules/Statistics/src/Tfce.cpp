@@ -18,19 +18,19 @@ Tfce::Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& are
       extent_(areas.size()) {}
 
 void Tfce::enhance(std::span<const float> values, std::span<float> enhanced) {
-  std::ranges::fill(enhanced, 0.0F);
+  std::fill(enhanced.begin(), enhanced.end(), 0.0F);
   enhanceSide(values, 1, enhanced);
   enhanceSide(values, -1, enhanced);
 }
 
 void Tfce::enhanceSide(std::span<const float> values, float sign, std::span<float> enhanced) {
   order_.clear();
-  std::ranges::fill(parent_, -1);
+  std::fill(parent_.begin(), parent_.end(), -1);
   for (std::size_t v = 0; v < values.size(); ++v) {
     const float height = sign * values[v];
     if (height > 0) order_.emplace_back(-height, static_cast<std::int32_t>(v));
   }
-  std::ranges::sort(order_);
+  std::sort(order_.begin(), order_.end());
   const double power = options_.height + 1;
   for (const auto& [negative, v] : order_) {
     const double height = -static_cast<double>(negative);
@@ -41,9 +41,10 @@ void Tfce::enhanceSide(std::span<const float> values, float sign, std::span<floa
   // A member's value is its own offset and those on the way to its root.
   for (const auto& [negative, v] : order_) {
     const std::int32_t root = rootOf(v);
-    if (since_[root] != 0) gather(root, 0);
-    const double above = root == v ? 0 : gathered_[root];
-    enhanced[v] = sign * static_cast<float>(gathered_[v] + above);
+    if (since_[static_cast<std::size_t>(root)] != 0) gather(root, 0);
+    const double above = root == v ? 0 : gathered_[static_cast<std::size_t>(root)];
+    enhanced[static_cast<std::size_t>(v)] =
+        sign * static_cast<float>(gathered_[static_cast<std::size_t>(v)] + above);
   }
 }
 
@@ -54,7 +55,7 @@ void Tfce::add(std::int32_t v, double integral) {
   since_[i] = integral;
   extent_[i] = areas_[i];
   for (const std::int32_t w : neighbours_[i]) {
-    if (parent_[w] < 0) continue;
+    if (parent_[static_cast<std::size_t>(w)] < 0) continue;
     join(rootOf(v), rootOf(w), integral);
   }
 }
@@ -71,11 +72,11 @@ void Tfce::gather(std::int32_t root, double integral) {
 std::int32_t Tfce::rootOf(std::int32_t v) {
   std::int32_t root = v;
   double offset = 0;
-  while (parent_[root] != root) {
-    offset += gathered_[root];
-    root = parent_[root];
+  while (parent_[static_cast<std::size_t>(root)] != root) {
+    offset += gathered_[static_cast<std::size_t>(root)];
+    root = parent_[static_cast<std::size_t>(root)];
   }
-  while (parent_[v] != root && v != root) {
+  while (parent_[static_cast<std::size_t>(v)] != root && v != root) {
     const auto i = static_cast<std::size_t>(v);
     const std::int32_t next = parent_[i];
     const double own = gathered_[i];
@@ -89,7 +90,7 @@ std::int32_t Tfce::rootOf(std::int32_t v) {
 
 void Tfce::join(std::int32_t a, std::int32_t b, double integral) {
   if (a == b) return;
-  if (extent_[a] < extent_[b]) std::swap(a, b);
+  if (extent_[static_cast<std::size_t>(a)] < extent_[static_cast<std::size_t>(b)]) std::swap(a, b);
   gather(a, integral);
   gather(b, integral);
   const auto under = static_cast<std::size_t>(b), root = static_cast<std::size_t>(a);

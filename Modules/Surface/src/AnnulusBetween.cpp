@@ -52,7 +52,7 @@ void forLinesThrough(const std::array<Vector, 3>& corner, const std::array<int, 
 
 GridCrossings::GridCrossings(const TriangleMesh& mesh, const Grid& grid) : size_(grid.size) {
   Positions index(mesh.vertexCount(), 3);
-  parallelFor(static_cast<std::size_t>(index.rows()), [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(index.rows()), 4096, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const Vector at = grid.toIndex(mesh.positions.row(row));
     index.row(row) = at + Vector(kAside[0], kAside[1], kAside[2]);
@@ -132,7 +132,7 @@ template <class Kind, class OuterPlace>
 harmonic::Annulus annulusOn(const Grid& grid, const GridCrossings& white, const Kind& siteOutside,
                             const OuterPlace& outerPlace, const Monitor& monitor) {
   Volume<harmonic::Site> sites(grid);
-  parallelFor(sites.size(), [&](std::size_t v) {
+  parallelFor(sites.size(), 1 << 14, [&](std::size_t v) {
     const auto voxel = grid.subscripts(v);
     sites[v] = white.inside(voxel) ? harmonic::Site::Inner : siteOutside(voxel);
   });

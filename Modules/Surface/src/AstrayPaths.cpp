@@ -21,7 +21,7 @@ std::int64_t shortenAstray(const TriangleMesh& white, double voxel,
                            std::vector<Trajectory>& paths) {
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   std::vector<double> most(paths.size(), kInfinity);
-  parallelFor(paths.size(), [&](std::size_t v) {
+  parallelFor(paths.size(), 512, [&](std::size_t v) {
     std::vector<double> lengths;
     for (const std::int32_t w : withinTwoEdges(v, topology)) {
       if (paths[w].length() > 0) lengths.push_back(paths[w].length());

@@ -38,11 +38,11 @@ Eigen::VectorXd BorderChooser::choose(int rounds) const {
   Eigen::VectorXd chosen = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(misses_.size()));
   for (int round = 0; round < rounds; ++round) {
     Eigen::VectorXd next(chosen.size());
-    parallelFor(misses_.size(), [&](std::size_t v) {
+    parallelFor(misses_.size(), 512, [&](std::size_t v) {
       double mean = 0;
       const auto& ring = topology_.vertexVertices[v];
       for (const std::int32_t w : ring) mean += chosen[w] / static_cast<double>(ring.size());
-      next[v] = has_[v] ? bestOf(v, mean) : 0.0;
+      next[static_cast<Eigen::Index>(v)] = has_[v] ? bestOf(v, mean) : 0.0;
     });
     chosen = std::move(next);
   }
@@ -52,7 +52,7 @@ Eigen::VectorXd BorderChooser::choose(int rounds) const {
 Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
                                           const Eigen::VectorXd& noise, double most) const {
   Eigen::VectorXd slopes(chosen.size()), left(chosen.size());
-  parallelFor(misses_.size(), [&](std::size_t v) {
+  parallelFor(misses_.size(), 512, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const int place = std::clamp(kSide + static_cast<int>(std::lround(chosen[row] / step_)), kSlope,
                                  kPlaces - 1 - kSlope);
@@ -61,7 +61,7 @@ Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
   });
   slopes = averaged(slopes, topology_, kSlopeRings);
   Eigen::VectorXd result(chosen.size());
-  parallelFor(misses_.size(), [&](std::size_t v) {
+  parallelFor(misses_.size(), 512, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const double deviation = std::hypot(noise[row], left[row]) / slopes[row];
     result[row] = has_[v] && deviation > 0 ? std::min(deviation, most) : most;
@@ -70,7 +70,7 @@ Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
 }
 
 std::int64_t BorderChooser::missing() const {
-  return std::ranges::count(has_, std::uint8_t{0});
+  return std::count(has_.begin(), has_.end(), std::uint8_t{0});
 }
 
 bool BorderChooser::comesNear(std::size_t v) const {

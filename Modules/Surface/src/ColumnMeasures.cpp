@@ -22,7 +22,7 @@ Eigen::VectorXd thicknessAtVertices(const harmonic::Annulus& annulus,
   const double off = std::sqrt(2.0 / 3) * radius;
   const auto topology = geometry::buildTopology(middle.faces, middle.vertexCount());
   Eigen::VectorXd thickness(middle.vertexCount());
-  parallelFor(static_cast<std::size_t>(thickness.size()), [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(thickness.size()), 512, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const Point here = middle.positions.row(row);
     const auto centre = correspondence::thicknessAt(annulus, found, here);

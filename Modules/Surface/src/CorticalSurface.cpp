@@ -133,7 +133,7 @@ harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor
   using harmonic::Site;
   const Grid& grid = tissue.white.grid;
   Volume<Site> sites(grid);
-  parallelFor(sites.size(), [&](std::size_t v) {
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t v) {
     sites[v] = tissue.white[v] > 0    ? Site::Inner
                : tissue.insulated[v]  ? Site::Insulated
                : tissue.tissue[v] > 0 ? Site::Tissue
@@ -263,10 +263,10 @@ double heightOf(const Point& a, const Point& b, const Point& c) {
 /// True if a move would make a face lower than `least` mm, and lower than it is.
 bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double least) {
   const auto& ring = mesh.facesOf(v);
-  return std::ranges::any_of(ring, [&](std::int32_t f) {
+  return std::any_of(ring.begin(), ring.end(), [&](std::int32_t f) {
     const auto& c = mesh.face(f);
     std::array<Point, 3> now = {mesh.at(c[0]), mesh.at(c[1]), mesh.at(c[2])}, then = now;
-    then[std::ranges::find(c, v) - c.begin()] = to;
+    then[std::find(c.begin(), c.end(), v) - c.begin()] = to;
     const double height = heightOf(then[0], then[1], then[2]);
     return height < least && height < heightOf(now[0], now[1], now[2]);
   });
@@ -336,7 +336,7 @@ void noteHeldBack(const GrowingColumns& ribbon, const LevelSet& outer, const Gro
   for (std::size_t v = 0; v < ribbon.paths.size(); ++v) {
     double missing = growth.missing(v);
     if (missing <= least) continue;
-    const Point at = result.pial.positions.row(v);
+    const Point at = result.pial.positions.row(static_cast<Eigen::Index>(v));
     const Trajectory& path = ribbon.paths[v];
     if (path.end == TrajectoryEnd::Outer) {
       const LevelSample border = sample(outer, at);

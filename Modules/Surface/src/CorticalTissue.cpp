@@ -10,6 +10,7 @@
 #include "Masks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -25,8 +26,10 @@ void requirePresent(const Histogram& histogram, const Labels& labels, const std:
   }
 }
 
+constexpr std::size_t kVoxelGrain = 1 << 18;  // voxels a task
+
 void addTo(Mask& mask, const Mask& other) {
-  parallelFor(mask.size(), [&](std::size_t v) {
+  parallelFor(mask.size(), kVoxelGrain, [&](std::size_t v) {
     mask[v] = static_cast<std::uint8_t>(mask[v] != 0 || other[v] != 0);
   });
 }
@@ -45,7 +48,7 @@ void requireInside(const Mask& mask, bool closeEdges, const Monitor& monitor) {
 }
 
 void sortUnique(Labels& labels) {
-  std::ranges::sort(labels);
+  std::sort(labels.begin(), labels.end());
   labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
 }
 
@@ -172,8 +175,8 @@ void checkRoles(const Histogram& histogram, const TissueOptions& options, const 
   if (!options.fill.empty()) requirePresent(histogram, roles.fill, "fill");
   if (!options.insulated.empty()) requirePresent(histogram, roles.insulated, "insulated");
   for (const Label label : roles.grey) {
-    if (std::ranges::binary_search(roles.white, label) ||
-        std::ranges::binary_search(roles.fill, label)) {
+    if (std::binary_search(roles.white.begin(), roles.white.end(), label) ||
+        std::binary_search(roles.fill.begin(), roles.fill.end(), label)) {
       throw InvalidInput("grey: label " + std::to_string(label) + " is also white or filled");
     }
   }
@@ -226,7 +229,7 @@ std::string structureOf(const Roles& roles, const TissueOptions& options) {
 
 Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
                        const std::string& name) {
-  const auto [low, high] = std::ranges::minmax_element(scalars.data);
+  const auto [low, high] = std::minmax_element(scalars.data.begin(), scalars.data.end());
   if (scalars.size() == 0) throw InvalidInput(name + ": empty volume");
   const bool isShare = *low >= 0;
   const double boundary = level.value_or(isShare ? 0.5 * *high : 0.0);
@@ -252,7 +255,7 @@ Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level
   }
   const double sign = above <= below ? 1 : -1;
   Volume<float> share(scalars.grid);
-  parallelFor(share.size(), [&](std::size_t v) {
+  parallelFor(share.size(), 1 << 18, [&](std::size_t v) {
     share[v] =
         static_cast<float>(std::clamp(0.5 + sign * (scalars[v] - boundary) / scale, 0.0, 1.0));
   });
@@ -264,7 +267,7 @@ Volume<float> addShares(const Volume<float>& a, const Volume<float>& b) {
     throw InvalidInput("shares: white and grey matter are on different grids");
   }
   Volume<float> sum(a.grid);
-  parallelFor(sum.size(), [&](std::size_t v) { sum[v] = std::min(1.0F, a[v] + b[v]); });
+  parallelFor(sum.size(), 1 << 18, [&](std::size_t v) { sum[v] = std::min(1.0F, a[v] + b[v]); });
   return sum;
 }
 
@@ -323,7 +326,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   }
   masks.greyVoxels = countIn(masks.grey);
   masks.atImageBorder = countOnEdge(masks.white) + countOnEdge(masks.grey);
-  parallelFor(masks.white.size(), [&](std::size_t v) {
+  parallelFor(masks.white.size(), kVoxelGrain, [&](std::size_t v) {
     if (masks.white[v] || masks.grey[v]) masks.insulated[v] = 0;
   });
   return masks;

@@ -88,7 +88,9 @@ class PathSearch {
   }
 
   /// Length of the ribbon outside of the border as it is.
-  [[nodiscard]] double lengthOf(std::size_t v) const { return paths_[v].length() - way_[v]; }
+  [[nodiscard]] double lengthOf(std::size_t v) const {
+    return paths_[v].length() - way_[static_cast<Eigen::Index>(v)];
+  }
 
   [[nodiscard]] Eigen::MatrixXd profiles() const {
     Eigen::MatrixXd all =
@@ -142,7 +144,7 @@ class PathSearch {
   }
 
   [[nodiscard]] Choice choiceOf(std::size_t v, double step) const {
-    const double way = way_[v];
+    const double way = way_[static_cast<Eigen::Index>(v)];
     const auto places = [&](double length) {
       return std::clamp(static_cast<int>(std::floor(length / step)), 0, kSide);
     };

@@ -38,7 +38,7 @@ Eigen::VectorXd distanceThickness(const TriangleMesh& white, const TriangleMesh&
   // What lies beyond a vertex is near its own face of the other surface.
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   Eigen::VectorXd thickness(white.vertexCount());
-  parallelFor(faceAt.size(), [&](std::size_t v) {
+  parallelFor(faceAt.size(), 1024, [&](std::size_t v) {
     const Point inner = white.positions.row(v).transpose();
     const Point outer = pial.positions.row(v).transpose();
     const double outward = trees[1]->closestPoint(inner, faceAt[v]).squaredDistance;

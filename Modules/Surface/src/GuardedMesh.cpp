@@ -81,7 +81,7 @@ void FaceRing::remove(std::int32_t face) {
   if (many_.empty()) return;
   many_.pop_back();
   if (count_ > few_.size()) return;
-  std::ranges::copy(many_, few_.begin());
+  std::copy(many_.begin(), many_.end(), few_.begin());
   many_.clear();
 }
 
@@ -323,7 +323,8 @@ class GuardedMesh::FacesOfSlabs {
  public:
   explicit FacesOfSlabs(const GuardedMesh& mesh)
       : ranges_(mesh.boxes_.size()), slabs_((mesh.cellSize_[2] + kLayers - 1) / kLayers) {
-    parallelFor(ranges_.size(), [&](std::size_t f) { ranges_[f] = mesh.cellsOf(mesh.boxes_[f]); });
+    parallelFor(ranges_.size(), 4096,
+                [&](std::size_t f) { ranges_[f] = mesh.cellsOf(mesh.boxes_[f]); });
     for (std::size_t f = 0; f < ranges_.size(); ++f) {
       for (int slab = ranges_[f][2] / kLayers; slab <= ranges_[f][5] / kLayers; ++slab) {
         slabs_[slab].push_back(static_cast<std::int32_t>(f));
@@ -353,7 +354,7 @@ class GuardedMesh::FacesOfSlabs {
 
 void GuardedMesh::fillCells() {
   constexpr std::uint32_t kLanes = BoxLanes::kLanes;
-  parallelFor(faces_.size(), [&](std::size_t f) {
+  parallelFor(faces_.size(), 4096, [&](std::size_t f) {
     const Corners& c = faces_[f];
     boxes_[f] = roomy(boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]}));
   });
@@ -485,7 +486,7 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
     return false;
   };
   facesNear(r, all, scratch);
-  return std::ranges::none_of(scratch.near, meets);
+  return std::none_of(scratch.near.begin(), scratch.near.end(), meets);
 }
 
 void GuardedMesh::facesNear(const CellRange& range, const Box& box, Scratch& scratch) const {
@@ -719,7 +720,7 @@ constexpr int kSlab = 2 * kHalfSlab;
 }  // namespace
 
 int GuardedMesh::slabAxis() const {
-  return static_cast<int>(std::ranges::max_element(cellSize_) - cellSize_.begin());
+  return static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
 }
 
 template <class Item, class Work>
@@ -828,7 +829,7 @@ std::int64_t GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices
   const std::vector<std::uint8_t> stand = surface::moveTogether(mesh, vertices, attempts, to);
   for (const std::int32_t v : vertices) positions_[v] = mesh.positions.row(v);
   reboxAll();
-  return std::ranges::count(stand, static_cast<std::uint8_t>(attempts));
+  return std::count(stand.begin(), stand.end(), static_cast<std::uint8_t>(attempts));
 }
 
 void GuardedMesh::reboxAll() {

@@ -101,8 +101,8 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
     if (std::abs(d) > sure) sides[v] = d < 0 ? 1 : 2;
   }
   spreadLabels(white, sides);
-  const auto left = std::ranges::count(sides.data, 1);
-  const auto right = std::ranges::count(sides.data, 2);
+  const auto left = std::count(sides.data.begin(), sides.data.end(), 1);
+  const auto right = std::count(sides.data.begin(), sides.data.end(), 2);
   if (10 * std::min(left, right) < left + right) {
     throw InvalidInput("hemisphere: white matter does not hold two hemispheres (" +
                        std::to_string(left) + " voxels left, " + std::to_string(right) +
@@ -118,8 +118,8 @@ void warnOfTwoHemispheres(const Mask& white, const Monitor& monitor) {
   std::int64_t left = 0, right = 0;
   try {
     const Mask sides = splitHemispheres(white);
-    left = std::ranges::count(sides.data, 1);
-    right = std::ranges::count(sides.data, 2);
+    left = std::count(sides.data.begin(), sides.data.end(), 1);
+    right = std::count(sides.data.begin(), sides.data.end(), 2);
   } catch (const InvalidInput&) {
     return;  // not two hemispheres: nothing to say
   }

@@ -69,7 +69,7 @@ Eigen::MatrixXd deepWhite(const std::vector<Trajectory>& paths, const LevelSet& 
       const double value = valueAt(image, at), least = kDeepShare * depth * voxel;
       const bool isDeep = band * sample(inner, at).value >= std::min(least, kDeepShare * band);
       if (!isDeep || !std::isfinite(value)) continue;
-      found.row(v) += Eigen::RowVector2d(value, 1);
+      found.row(static_cast<Eigen::Index>(v)) += Eigen::RowVector2d(value, 1);
     }
   });
   return found;
@@ -100,7 +100,7 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
     double grey = 0;
     for (const double share : kGreyShares)
       grey += valueAt(image, along(path, share * path.length()));
-    found.grey[v] = grey / kGreyShares.size();
+    found.grey[static_cast<Eigen::Index>(v)] = grey / kGreyShares.size();
   });
   const auto beyond = [&](const Trajectory& path, int k) {
     return along(path, path.length() + kOutsideReach * voxel * k / (kOutsideSamples - 1));
@@ -124,8 +124,8 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
       if (value < least) least = value;
       seen += masked.seenAt(at) > 0.5;
     }
-    found.covered[v] = seen / static_cast<double>(kOutsideSamples);
-    found.outside[v] = least < kInfinity ? found.sign * least : kNaN;
+    found.covered[static_cast<Eigen::Index>(v)] = seen / static_cast<double>(kOutsideSamples);
+    found.outside[static_cast<Eigen::Index>(v)] = least < kInfinity ? found.sign * least : kNaN;
   });
   return found;
 }
@@ -303,7 +303,7 @@ Sight meanOf(Sight first, const Sight& second) {
     const double weight = sight.covered[row] * slope * slope;
     return std::isfinite(weight) && std::isfinite(sight.misses[v][kSide]) ? weight : 0;
   };
-  parallelFor(first.misses.size(), [&](std::size_t v) {
+  parallelFor(first.misses.size(), 1024, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const double one = weightOf(first, v), two = weightOf(second, v);
     if (!(two > 0)) return;
@@ -354,14 +354,14 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
     borders.white = searchWhite(given, topology, edge, masked.image, voxel);
     parallelFor(paths.size(), 256, [&](std::size_t v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
-      paths[v] = between(given[v], borders.white[v], given[v].length());
+      paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
     });
     const Tissues tissues =
         brightnessOf(paths, masked, inner, topology, edge, voxel, SenseOf::White);
     borders.outer = searchOuter(paths, topology, edge, masked, voxel, tissues.sign,
                                 fluidContrast(tissues, options.fluid));
     for (std::size_t v = 0; v < paths.size(); ++v) {
-      const double way = borders.outer[v];
+      const double way = borders.outer[static_cast<Eigen::Index>(v)];
       if (way == 0) continue;
       paths[v] = between(paths[v], 0, paths[v].length() + way);
       paths[v].end = TrajectoryEnd::Outer;

@@ -58,7 +58,7 @@ class Pushes {
 
   /// In the order of their numbers.
   [[nodiscard]] const std::vector<std::int32_t>& vertices() {
-    std::ranges::sort(pushed_);
+    std::sort(pushed_.begin(), pushed_.end());
     return pushed_;
   }
   /// From `at`, by a share of the mean of the pushes, but not far from `start`.
@@ -118,7 +118,7 @@ void widen(const TriangleMesh& mesh, std::int32_t f, double wanted, double most,
 
 std::vector<std::int32_t> smallFaces(const TriangleMesh& mesh, double leastArea) {
   std::vector<std::uint8_t> isSmall(static_cast<std::size_t>(mesh.faceCount()));
-  parallelFor(isSmall.size(), [&](std::size_t f) {
+  parallelFor(isSmall.size(), 8192, [&](std::size_t f) {
     isSmall[f] = areaOf(mesh, static_cast<std::int32_t>(f)) < leastArea;
   });
   std::vector<std::int32_t> small;

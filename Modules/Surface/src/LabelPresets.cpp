@@ -211,7 +211,7 @@ Labels unknownTo(LabelPreset preset, const Histogram& histogram) {
 LabelPreset guessPreset(const Volume<Label>& labels, const Histogram& histogram) {
   const auto has = [&](Label label) { return histogram.contains(label); };
   const auto hasAll = [&](std::initializer_list<Label> wanted) {
-    return std::ranges::all_of(wanted, has);
+    return std::all_of(wanted.begin(), wanted.end(), has);
   };
   const Label last = histogram.rbegin()->first;
   // FreeSurfer gives label 1 to nothing.

@@ -67,7 +67,7 @@ std::vector<std::vector<Place>> bySlice(const std::vector<Trajectory>& paths, Pa
       const bool has = border == PathBorder::Inner ? paths[v].end != TrajectoryEnd::NoRibbon
                                                    : paths[v].end == TrajectoryEnd::Outer;
       if (!has) continue;
-      addPlaces(paths[v], border, moved[v], grid, parts[part]);
+      addPlaces(paths[v], border, moved[static_cast<Eigen::Index>(v)], grid, parts[part]);
     }
   });
   std::vector<std::vector<Place>> slices(grid.size[2]);

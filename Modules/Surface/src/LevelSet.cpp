@@ -258,7 +258,7 @@ LevelSet distanceTo(const Boundary& boundary, const Volume<std::uint8_t>& side) 
 
 LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
   Volume<std::uint8_t> side(mask.grid);
-  parallelFor(side.size(), [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
+  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
   const harmonic::LabelBoundary boundary(side.data, mask.grid.size, 3, kTrust);
   return distanceTo(boundary, side);
 }
@@ -269,13 +269,13 @@ double bandOf(const Grid& grid) {
 
 LevelSet distanceLevelOf(const LevelSet& level) {
   Volume<std::uint8_t> side(level.grid);
-  parallelFor(side.size(), [&](std::size_t v) { side[v] = level[v] > 0 ? 1 : 0; });
+  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = level[v] > 0 ? 1 : 0; });
   return distanceTo(ZeroBoundary(level), side);
 }
 
 LevelSet levelSetOf(const Volume<float>& share) {
   LevelSet level(share.grid);
-  parallelFor(level.size(), [&](std::size_t v) {
+  parallelFor(level.size(), 1 << 16, [&](std::size_t v) {
     level[v] = offZero(std::clamp(2 * share[v] - 1, -1.0F, 1.0F));
   });
   return level;

@@ -6,6 +6,7 @@
 #include "PathProfile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -33,7 +34,7 @@ std::vector<std::size_t> besides(const Volume<float>& image,
       if (w >= 0 && image[w] == 0) front.push_back(static_cast<std::size_t>(w));
     }
   }
-  std::ranges::sort(front);
+  std::sort(front.begin(), front.end());
   front.erase(std::unique(front.begin(), front.end()), front.end());
   return front;
 }
@@ -49,7 +50,7 @@ double MaskedImage::seenAt(const Point& p) const {
 MaskedImage beyondMask(Volume<float> image, double reach) {
   MaskedImage result{std::move(image), {}};
   Volume<float>& values = result.image;
-  if (std::ranges::find(values.data, 0.0F) == values.data.end()) return result;
+  if (std::find(values.data.begin(), values.data.end(), 0.0F) == values.data.end()) return result;
   result.seen = Volume<float>(values.grid, 0.0F);
   std::vector<std::size_t> known;
   for (std::size_t v = 0; v < values.size(); ++v) {

@@ -12,11 +12,11 @@ namespace explica::surface {
 Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels) {
   Mask mask(volume.grid);
   if (labels.empty()) return mask;
-  const Label low = *std::ranges::min_element(labels);
-  const Label high = *std::ranges::max_element(labels);
+  const Label low = *std::min_element(labels.begin(), labels.end());
+  const Label high = *std::max_element(labels.begin(), labels.end());
   std::vector<std::uint8_t> wanted(static_cast<std::size_t>(high - low) + 1, 0);
   for (const Label label : labels) wanted[label - low] = 1;
-  parallelFor(volume.size(), [&](std::size_t v) {
+  parallelFor(volume.size(), 1 << 18, [&](std::size_t v) {
     const Label value = volume[v];
     if (value >= low && value <= high) mask[v] = wanted[value - low];
   });

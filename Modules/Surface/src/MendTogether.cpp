@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <utility>
@@ -102,7 +103,7 @@ class JointMesh {
   [[nodiscard]] bool mayBeHalved(const Edge& e) const {
     for (const std::int32_t f : first().facesOf(e[0])) {
       const auto& c = first().face(f);
-      if (std::ranges::find(c, e[1]) == c.end()) continue;
+      if (std::find(c.begin(), c.end(), e[1]) == c.end()) continue;
       if (areaOf(f) < 2 * limits_.leastArea) return false;
     }
     return true;
@@ -159,7 +160,7 @@ std::vector<T> sortedOfFaces(const JointMesh& mesh, const Look& look) {
     }
     return part;
   });
-  std::ranges::sort(all.values);
+  std::sort(all.values.begin(), all.values.end());
   return std::move(all.values);
 }
 
@@ -175,8 +176,9 @@ std::vector<Edge> edgesOfSmallest(const JointMesh& mesh, double below) {
   for (const auto& [area, f] : faces) {
     const auto& c = mesh.first().face(f);
     std::array<Edge, 3> own = {Edge{c[0], c[1]}, Edge{c[1], c[2]}, Edge{c[2], c[0]}};
-    std::ranges::stable_sort(
-        own, [&](const Edge& a, const Edge& b) { return mesh.lengthOf(a) < mesh.lengthOf(b); });
+    std::stable_sort(own.begin(), own.end(), [&](const Edge& a, const Edge& b) {
+      return mesh.lengthOf(a) < mesh.lengthOf(b);
+    });
     edges.insert(edges.end(), own.begin(), own.end());
   }
   return edges;
@@ -237,8 +239,8 @@ void meetCount(JointMesh& mesh, const MendingLimits& limits) {
 
 Mending mendTogether(const std::array<TriangleMesh*, 3>& surfaces, Eigen::MatrixXd& values,
                      const MendingLimits& limits, double cell) {
-  if (std::ranges::none_of(surfaces,
-                           [&](const TriangleMesh* mesh) { return isBeyond(*mesh, limits); })) {
+  if (std::none_of(surfaces.begin(), surfaces.end(),
+                   [&](const TriangleMesh* mesh) { return isBeyond(*mesh, limits); })) {
     return {};
   }
   JointMesh mesh(surfaces, values, limits, cell);

@@ -24,7 +24,7 @@ class MarkedCells {
     const double perMm = (kCells - 1) / std::max(size.maxCoeff(), 1e-300);
     for (int a = 0; a < 3; ++a) count_[a] = static_cast<int>(size[a] * perMm) + 1;
     cells_.resize(static_cast<std::size_t>(mesh.vertexCount()));
-    parallelFor(cells_.size(), [&](std::size_t v) {
+    parallelFor(cells_.size(), 4096, [&](std::size_t v) {
       for (int a = 0; a < 3; ++a) {
         const double place = (mesh.positions(static_cast<Eigen::Index>(v), a) - low[a]) * perMm;
         cells_[v][a] = static_cast<std::uint8_t>(std::min(static_cast<int>(place), count_[a] - 1));
@@ -77,7 +77,7 @@ class MarkedCells {
 /// Pairs of faces that meet, at least one of each pair marked.
 std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMarks& marked) {
   constexpr double kMany = 0.5;  // share of faces beyond which all are looked through
-  const auto count = std::ranges::count(marked, std::uint8_t{1});
+  const auto count = std::count(marked.begin(), marked.end(), std::uint8_t{1});
   if (static_cast<double>(count) > kMany * static_cast<double>(marked.size())) {
     return geometry::findSelfIntersections(mesh);
   }
@@ -86,7 +86,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
     if (marked[f]) cells.mark(static_cast<Eigen::Index>(f));
   }
   std::vector<std::uint8_t> near(marked.size());
-  parallelFor(marked.size(),
+  parallelFor(marked.size(), 4096,
               [&](std::size_t f) { near[f] = cells.touches(static_cast<Eigen::Index>(f)); });
   std::vector<std::int32_t> faces;
   std::vector<bool> isMarked;
@@ -99,7 +99,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
   part.positions = mesh.positions;
   part.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t n = 0; n < faces.size(); ++n) {
-    part.faces.row(n) = mesh.faces.row(faces[n]);
+    part.faces.row(static_cast<Eigen::Index>(n)) = mesh.faces.row(faces[n]);
   }
   std::vector<geometry::FacePair> pairs = geometry::findSelfIntersections(part, isMarked);
   for (geometry::FacePair& pair : pairs) {
@@ -111,7 +111,7 @@ std::vector<geometry::FacePair> meetings(const TriangleMesh& mesh, const FaceMar
 /// Marks the faces that have a corner among the marked vertices.
 FaceMarks facesAt(const TriangleMesh& mesh, const std::vector<std::uint8_t>& vertexMarked) {
   FaceMarks marked(static_cast<std::size_t>(mesh.faceCount()));
-  parallelFor(marked.size(), [&](std::size_t f) {
+  parallelFor(marked.size(), 1 << 14, [&](std::size_t f) {
     const auto row = static_cast<Eigen::Index>(f);
     marked[f] = vertexMarked[mesh.faces(row, 0)] | vertexMarked[mesh.faces(row, 1)] |
                 vertexMarked[mesh.faces(row, 2)];
@@ -140,10 +140,10 @@ std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
   std::vector<std::int32_t> listed(static_cast<std::size_t>(mesh.vertexCount()), kStays);
   std::vector<std::uint8_t> changed(listed.size(), 0);
   Positions start(static_cast<Eigen::Index>(vertices.size()), 3);
-  parallelFor(vertices.size(), [&](std::size_t n) {
+  parallelFor(vertices.size(), 1024, [&](std::size_t n) {
     const std::int32_t v = vertices[n];
     listed[v] = static_cast<std::int32_t>(n);
-    start.row(n) = mesh.positions.row(v);
+    start.row(static_cast<Eigen::Index>(n)) = mesh.positions.row(v);
     const Point goal = asStored(to(v, 0));
     changed[v] = goal != Point(mesh.positions.row(v));
     mesh.positions.row(v) = goal;
@@ -151,7 +151,7 @@ std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
   for (;;) {
     const auto pairs = meetings(mesh, facesAt(mesh, changed));
     if (pairs.empty()) return attempt;
-    std::ranges::fill(changed, std::uint8_t{0});
+    std::fill(changed.begin(), changed.end(), std::uint8_t{0});
     std::vector<std::int32_t> retreating;
     for (const geometry::FacePair& pair : pairs) {
       for (const std::int32_t face : pair) {

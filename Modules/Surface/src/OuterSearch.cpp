@@ -54,7 +54,7 @@ class Search {
     std::vector<double> contrasts(paths_.size(), kNaN);
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
-      contrasts[v] = grey[v] - firstDarkest(v, kInfinity).first;
+      contrasts[v] = grey[static_cast<Eigen::Index>(v)] - firstDarkest(v, kInfinity).first;
     });
     return median(std::move(contrasts));
   }
@@ -114,7 +114,8 @@ Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
   const Search search(paths, image, voxel, sign, options);
   const auto n = static_cast<Eigen::Index>(paths.size());
   Eigen::MatrixXd seen(n, 2);
-  parallelFor(paths.size(), 256, [&](std::size_t v) { seen.row(v) = search.greyAt(v); });
+  parallelFor(paths.size(), 256,
+              [&](std::size_t v) { seen.row(static_cast<Eigen::Index>(v)) = search.greyAt(v); });
   seen = averaged(std::move(seen), topology, timesFor(options.greySpread * voxel, edge));
   const Eigen::VectorXd grey = seen.col(0).cwiseQuotient(seen.col(1));
   const double contrast = fluidContrast > 0 ? fluidContrast : search.usualContrast(grey);

@@ -81,7 +81,7 @@ std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
     const auto second = topology.vertexVertices[w];
     near.insert(near.end(), second.begin(), second.end());
   }
-  std::ranges::sort(near);
+  std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
 }
@@ -90,7 +90,7 @@ Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& t
                          int times) {
   for (int pass = 0; pass < times; ++pass) {
     Eigen::MatrixXd next = values;
-    parallelFor(topology.vertexVertices.size(), [&](std::size_t v) {
+    parallelFor(topology.vertexVertices.size(), 1024, [&](std::size_t v) {
       const auto row = static_cast<Eigen::Index>(v);
       if (!std::isfinite(values(row, 0))) return;
       int count = 1;

@@ -146,7 +146,7 @@ class Crumpled {
       }
     }
     for (const std::int32_t v : list) listed_[v] = 0;
-    std::ranges::sort(list);
+    std::sort(list.begin(), list.end());
     return list;
   }
 
@@ -208,7 +208,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
       if (guarded.onRim(v)) return true;
       const Ring ring = ringOf(guarded, v);
       const Point from = guarded.at(v), to = sweep % 2 == 0 ? ring.mean : ring.centre;
-      return std::ranges::any_of(kShares, [&](double share) {
+      return std::any_of(kShares.begin(), kShares.end(), [&](double share) {
         return guarded.move(v, partOfWay(from, to, share), scratch);
       });
     });

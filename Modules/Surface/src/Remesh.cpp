@@ -137,7 +137,8 @@ class Remesher {
         if (wanted(length)) found.push_back({static_cast<int>(length * perClass), {a, b}});
       }
     }
-    std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Edge> sorted;
     sorted.reserve(found.size());
     for (const auto& [length, e] : found) sorted.push_back(e);

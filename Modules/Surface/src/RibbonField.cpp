@@ -99,7 +99,7 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
   slope_ = harmonic::solveInterpolant(annulus_, options, stoppable).gradient;
   checkpoint(monitor);
   const float flat = kFlat / static_cast<float>(voxelSize(grid_));
-  parallelFor(slope_.size(), [&](std::size_t n) {
+  parallelFor(slope_.size(), 8192, [&](std::size_t n) {
     const float length = slope_[n].norm();
     slope_[n] = length > flat ? Eigen::Vector3f(slope_[n] / length) : Eigen::Vector3f::Zero();
   });
@@ -108,7 +108,7 @@ RibbonField::RibbonField(const CorticalTissue& tissue, const TriangleMesh& white
 harmonic::Annulus RibbonField::ribbon() const {
   Volume<harmonic::Site> sites(grid_, harmonic::Site::Outer);
   Volume<float> innerLevel(grid_), outerLevel(grid_);
-  parallelFor(sites.size(), [&](std::size_t v) {
+  parallelFor(sites.size(), 1 << 16, [&](std::size_t v) {
     innerLevel[v] = -tissue_.white[v];
     outerLevel[v] = -tissue_.tissue[v];
     if (tissue_.white[v] > 0) {

@@ -75,7 +75,7 @@ void cut(Trajectory& path, double end) {
 }
 
 void keepFromMiddles(double gap, std::vector<Trajectory>& paths) {
-  parallelFor(paths.size(), [&](std::size_t v) {
+  parallelFor(paths.size(), 1024, [&](std::size_t v) {
     Trajectory& path = paths[v];
     if (path.end == TrajectoryEnd::Bank && path.length() > gap) cut(path, path.length() - gap);
   });

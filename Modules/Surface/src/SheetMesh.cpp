@@ -45,7 +45,8 @@ bool markSmallFans(const MeshTopology& topology, std::int32_t v,
   }
   std::vector<int> sizes(faces.size(), 0);
   for (std::size_t a = 0; a < faces.size(); ++a) ++sizes[fans.root(static_cast<std::int32_t>(a))];
-  const auto largest = static_cast<std::int32_t>(std::ranges::max_element(sizes) - sizes.begin());
+  const auto largest =
+      static_cast<std::int32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   bool any = false;
   for (std::size_t a = 0; a < faces.size(); ++a) {
     if (fans.root(static_cast<std::int32_t>(a)) == largest) continue;
@@ -96,11 +97,11 @@ Pieces largePieces(const TriangleMesh& mesh, double least) {
   const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   const auto piece = geometry::facePieces(topology, std::vector<bool>(mesh.faceCount(), true));
   const std::vector<double> areas = areasOf(mesh, piece);
-  if (!areas.empty()) least = std::min(least, *std::ranges::max_element(areas));
+  if (!areas.empty()) least = std::min(least, *std::max_element(areas.begin(), areas.end()));
   std::vector<std::uint8_t> marked(mesh.faceCount());
   for (std::size_t f = 0; f < marked.size(); ++f) marked[f] = areas[piece[f]] < least;
   return {withoutFaces(mesh, marked),
-          std::ranges::count_if(areas, [&](double area) { return area < least; })};
+          std::count_if(areas.begin(), areas.end(), [&](double area) { return area < least; })};
 }
 
 std::vector<std::uint8_t> largePatches(const TriangleMesh& mesh, std::vector<std::uint8_t> marked,
@@ -152,7 +153,7 @@ Closed withHolesClosed(const TriangleMesh& mesh, double longest,
     }
   }
   for (Eigen::Index g = 0; g < faces; ++g) marked[g] = holeOf[g] >= 0 && meets[holeOf[g]];
-  closed.holes -= std::ranges::count(meets, std::uint8_t{1});
+  closed.holes -= std::count(meets.begin(), meets.end(), std::uint8_t{1});
   closed.mesh = withoutFaces(closed.mesh, marked);
   return closed;
 }

@@ -42,8 +42,8 @@ template <class Key>
 std::vector<std::int32_t> orderBy(const std::vector<Key>& keys) {
   std::vector<std::int32_t> order(keys.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_sort(order,
-                           [&](std::int32_t a, std::int32_t b) { return keys[a] < keys[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::int32_t a, std::int32_t b) { return keys[a] < keys[b]; });
   return order;
 }
 

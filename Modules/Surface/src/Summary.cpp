@@ -38,7 +38,7 @@ std::int64_t SurfaceSummary::meetings() const {
 Eigen::VectorXd validOf(const CorticalSurfaces& made) {
   Eigen::VectorXd valid = (made.thickness.array() > 0).cast<double>().matrix();
   for (std::size_t v = 0; v < made.sheet.known.size(); ++v) {
-    if (!made.sheet.known[v]) valid[v] = 0;
+    if (!made.sheet.known[v]) valid[static_cast<Eigen::Index>(v)] = 0;
   }
   return valid;
 }

@@ -51,13 +51,15 @@ class Thinner {
         faces_(mesh.faceCount()) {
     most_ = 0.5 * std::min(edge, 2 * voxelSize(level.grid));
     std::iota(joined_.begin(), joined_.end(), 0);
-    parallelFor(positions_.size(), [&](std::size_t v) { positions_[v] = mesh.positions.row(v); });
+    parallelFor(positions_.size(), 4096, [&](std::size_t v) {
+      positions_[v] = mesh.positions.row(static_cast<Eigen::Index>(v));
+    });
     for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
       faces_[f] = {mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)};
       for (const std::int32_t v : faces_[f]) rings_[v].add(static_cast<std::int32_t>(f));
     }
     onRim_.resize(positions_.size());
-    parallelFor(onRim_.size(),
+    parallelFor(onRim_.size(), 4096,
                 [&](std::size_t v) { onRim_[v] = endsAt(static_cast<std::int32_t>(v)); });
   }
 
@@ -77,7 +79,7 @@ class Thinner {
   /// For each vertex the one that it was joined to, in the end; itself if none.
   [[nodiscard]] std::vector<std::int32_t> joined() const {
     std::vector<std::int32_t> root(joined_.size());
-    parallelFor(root.size(), [&](std::size_t v) {
+    parallelFor(root.size(), 4096, [&](std::size_t v) {
       std::int32_t r = joined_[v];
       while (joined_[r] != r) r = joined_[r];
       root[v] = r;
@@ -119,7 +121,8 @@ class Thinner {
         if (length < limit) edges.push_back({static_cast<int>(length * perClass), {a, b}});
       }
     }
-    std::ranges::stable_sort(edges, [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(edges.begin(), edges.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [length, e] : edges) {
       if (joined_[e[0]] != e[0] || joined_[e[1]] != e[1]) continue;
       if ((positions_[e[0]] - positions_[e[1]]).squaredNorm() >= limit * limit) continue;
@@ -242,7 +245,7 @@ class Joined {
       : mesh_(mesh), root_(thinner.joined()), positions_(mesh.positions) {
     for (std::size_t v = 0; v < root_.size(); ++v) {
       if (root_[v] == static_cast<std::int32_t>(v)) {
-        positions_.row(v) = thinner.positions()[v];
+        positions_.row(static_cast<Eigen::Index>(v)) = thinner.positions()[v];
       }
     }
     takeFaces();
@@ -296,8 +299,8 @@ bool isFan(const std::vector<Sides>& sides) {
   for (const int way : {0, 1}) {
     std::size_t at = 0;
     for (;;) {
-      const auto found =
-          std::ranges::find_if(sides, [&](const Sides& s) { return s[1 - way] == sides[at][way]; });
+      const auto found = std::find_if(sides.begin(), sides.end(),
+                                      [&](const Sides& s) { return s[1 - way] == sides[at][way]; });
       if (found == sides.end()) break;  // a rim: the other way round
       at = found - sides.begin();
       if (at == 0 || ++count > sides.size()) return at == 0 && count == sides.size();
@@ -315,7 +318,7 @@ void markBranched(const Faces& faces, std::vector<std::uint8_t>& marked) {
     }
   }
   std::vector<std::uint8_t> branched(marked.size(), 0);
-  parallelFor(sides.size(),
+  parallelFor(sides.size(), 2048,
               [&](std::size_t v) { branched[v] = !sides[v].empty() && !isFan(sides[v]); });
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
     if (!branched[faces(f, 0)] && !branched[faces(f, 1)] && !branched[faces(f, 2)]) continue;
@@ -336,7 +339,8 @@ TriangleMesh compacted(const TriangleMesh& mesh) {
   TriangleMesh found;
   found.positions.resize(count, 3);
   for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] >= 0) found.positions.row(number[v]) = mesh.positions.row(v);
+    if (number[v] >= 0)
+      found.positions.row(number[v]) = mesh.positions.row(static_cast<Eigen::Index>(v));
   }
   found.faces = mesh.faces.unaryExpr([&](std::int32_t v) { return number[v]; });
   return found;
@@ -351,7 +355,7 @@ std::int64_t characteristicOf(const TriangleMesh& mesh) {
 
 TriangleMesh thinned(const TriangleMesh& given, const LevelSet& level, double edge) {
   TriangleMesh mesh = given;
-  parallelFor(static_cast<std::size_t>(mesh.vertexCount()), [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(mesh.vertexCount()), 4096, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     mesh.positions.row(row) = asStored(given.positions.row(row));
   });
@@ -376,7 +380,7 @@ TriangleMesh thinned(const TriangleMesh& given, const LevelSet& level, double ed
           marked[found.faces(row, 0)] || marked[found.faces(row, 1)] || marked[found.faces(row, 2)];
     }
     pairs = geometry::findSelfIntersections(found, changed);
-    std::ranges::fill(marked, std::uint8_t{0});
+    std::fill(marked.begin(), marked.end(), std::uint8_t{0});
     markBranched(found.faces, marked);
   }
   found = compacted(found);

@@ -60,7 +60,7 @@ std::int64_t fillPockets(Volume<Site>& roles) {
   const Grid& grid = roles.grid;
   const std::array<std::ptrdiff_t, 3> strides = {
       1, grid.size[0], static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1]};
-  const auto tissue = std::ranges::count(roles.data, Site::Tissue);
+  const auto tissue = std::count(roles.data.begin(), roles.data.end(), Site::Tissue);
   const auto most = static_cast<std::size_t>(kPocket * static_cast<double>(tissue));
   std::vector<std::uint8_t> seen(roles.size(), 0);
   std::vector<std::size_t> piece;
@@ -109,7 +109,7 @@ Volume<Site> sitesOf(const TissueMasks& masks) {
 }
 
 Ribbon solve(const Volume<Site>& sites, const Monitor& monitor) {
-  if (std::ranges::find(sites.data, Site::Outer) == sites.data.end()) {
+  if (std::find(sites.data.begin(), sites.data.end(), Site::Outer) == sites.data.end()) {
     throw InvalidInput("labels: nothing lies outside of the tissue");
   }
   Monitor stoppable = monitor;
@@ -131,7 +131,7 @@ SheetLevel levelOf(const Ribbon& field) {
   const Annulus& annulus = field.annulus;
   const Grid grid = gridOf(annulus.grid, {annulus.first, annulus.size});
   SheetLevel sheet{LevelSet(grid), Volume<std::uint8_t>(grid, 1), Volume<std::uint8_t>(grid, 0)};
-  parallelFor(sheet.level.size(), [&](std::size_t p) {
+  parallelFor(sheet.level.size(), 1 << 15, [&](std::size_t p) {
     const std::int32_t n = annulus.numberAt[p];
     float value = 0;
     if (n >= 0) {
@@ -181,7 +181,7 @@ void carryOn(SheetLevel& sheet) {
 std::vector<std::uint8_t> bareFaces(const TriangleMesh& mesh, const SheetLevel& sheet) {
   const Grid& grid = sheet.tissue.grid;
   std::vector<std::uint8_t> bare(mesh.faceCount());
-  parallelFor(bare.size(), [&](std::size_t f) {
+  parallelFor(bare.size(), 1 << 12, [&](std::size_t f) {
     const auto face = static_cast<Eigen::Index>(f);
     const Point middle = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
     const Vector index = grid.toIndex(middle);
@@ -220,8 +220,9 @@ TriangleMesh extractSheet(const Ribbon& field, const SheetLevel& sheet, SheetFac
   facts.piecesLeftOut = pieces.leftOut;
   const Grid& image = field.annulus.grid;
   const auto reachesEdge = [&](const std::vector<std::int32_t>& rim) {
-    return std::ranges::any_of(
-        rim, [&](std::int32_t v) { return onImageEdge(image, pieces.mesh.positions.row(v)); });
+    return std::any_of(rim.begin(), rim.end(), [&](std::int32_t v) {
+      return onImageEdge(image, pieces.mesh.positions.row(v));
+    });
   };
   Closed closed = withHolesClosed(pieces.mesh, 2 * kPi * kSmallHole * thickness, reachesEdge);
   facts.holesClosed = closed.holes;
@@ -238,7 +239,7 @@ Ways traceWays(const RibbonPaths& ribbon, const TriangleMesh& sheet) {
   ways.inward.resize(sheet.vertexCount());
   ways.outward.resize(sheet.vertexCount());
   parallelFor(ways.inward.size(), 256, [&](std::size_t v) {
-    const Point start = sheet.positions.row(v);
+    const Point start = sheet.positions.row(static_cast<Eigen::Index>(v));
     ways.inward[v] = ribbon.from(start, 0);
     ways.outward[v] = ribbon.from(start, 1);
     if (ways.inward[v].end == TrajectoryEnd::NoRibbon) ways.outward[v] = ways.inward[v];
@@ -326,7 +327,7 @@ Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, doub
     double missing = growth.missing(v);
     if (missing <= least) continue;
     // What has waited on its trajectory may have come to the border by sliding.
-    missing = std::min(missing, shortfall(grown.mesh.positions.row(v)));
+    missing = std::min(missing, shortfall(grown.mesh.positions.row(static_cast<Eigen::Index>(v))));
     if (missing <= least) continue;
     ++grown.heldBack;
     grown.missing += missing;
@@ -465,7 +466,8 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   facts.interpolated = interpolateWays(sheet, ways, facts.known);
   made.thickness.resize(sheet.vertexCount());
   for (std::size_t v = 0; v < ways.inward.size(); ++v) {
-    made.thickness[v] = ways.inward[v].length() + ways.outward[v].length();
+    made.thickness[static_cast<Eigen::Index>(v)] =
+        ways.inward[v].length() + ways.outward[v].length();
   }
   made.seconds.trajectories = secondsSince(last);
   monitor.progress(0.7, "growing the surfaces");

@@ -205,8 +205,9 @@ Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& vox
 /// Turns islands and cavities over; records them.
 void cleanPieces(const LevelSet& level, Marks& inside, std::vector<Defect>& defects) {
   const auto islands = pieces(inside, level.grid);
-  const auto largest = std::ranges::max_element(
-      islands, [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  const auto largest =
+      std::max_element(islands.begin(), islands.end(),
+                       [](const auto& a, const auto& b) { return a.size() < b.size(); });
   for (auto island = islands.begin(); island != islands.end(); ++island) {
     if (island == largest) continue;
     for (const std::size_t v : *island) inside[v] = 0;
@@ -218,9 +219,9 @@ void cleanPieces(const LevelSet& level, Marks& inside, std::vector<Defect>& defe
     outside[v] = !inside[v] && !onBorder(level.grid, v);
   const auto offsets = neighbourOffsets(level.grid);
   for (const auto& part : pieces(outside, level.grid)) {
-    const bool open = std::ranges::any_of(part, [&](std::size_t v) {
-      return std::ranges::any_of(offsets,
-                                 [&](std::ptrdiff_t o) { return onBorder(level.grid, v + o); });
+    const bool open = std::any_of(part.begin(), part.end(), [&](std::size_t v) {
+      return std::any_of(offsets.begin(), offsets.end(),
+                         [&](std::ptrdiff_t o) { return onBorder(level.grid, v + o); });
     });
     if (open) continue;
     for (const std::size_t v : part) inside[v] = 1;
@@ -297,7 +298,7 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
   monitor.progress(0.2, "growing from inside and from outside");
   Marks seed(inside.size(), 0), box(inside.size());
   const Volume<float> depth = distanceTo(mask, 0);
-  seed[std::ranges::max_element(depth.data) - depth.data.begin()] = 1;
+  seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
   for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
   HomotopicSet grown(grid, std::move(seed)), shrunk(grid, std::move(box));
   // Each waits for its own voxels only, one after another: the two run beside each other.
@@ -320,7 +321,7 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
   for (std::size_t f = 0; f < fills.size(); ++f) {
     order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
   }
-  std::ranges::sort(order);
+  std::sort(order.begin(), order.end());
   Marks inFill(inside.size(), 0);
   std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
   for (const auto& [cost, f] : order) {
@@ -398,7 +399,7 @@ Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) 
       }
     });
   }
-  parallelFor(mask.size(), [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
+  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
   return squared;
 }
 
@@ -457,7 +458,7 @@ TopologyResult correctTopology(const LevelSet& level, GenusRule rule, const Moni
       ++result.voxelsChanged;
     }
   }
-  std::ranges::sort(result.defects, [](const Defect& a, const Defect& b) {
+  std::sort(result.defects.begin(), result.defects.end(), [](const Defect& a, const Defect& b) {
     return a.voxels != b.voxels ? a.voxels > b.voxels
                                 : std::lexicographical_compare(a.place.begin(), a.place.end(),
                                                                b.place.begin(), b.place.end());

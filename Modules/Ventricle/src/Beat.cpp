@@ -15,7 +15,7 @@ namespace {
 constexpr double kMlPerMm3 = 1e-3;  // ml of a cubic millimetre
 
 std::size_t countOf(const Volume<Label>& heart, Label label) {
-  return static_cast<std::size_t>(std::ranges::count(heart.data, label));
+  return static_cast<std::size_t>(std::count(heart.data.begin(), heart.data.end(), label));
 }
 
 double percentMore(double value, double reference) {

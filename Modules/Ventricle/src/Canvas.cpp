@@ -33,7 +33,7 @@ std::vector<double> crossings(const std::vector<Point2>& outline, double y) {
     if ((a[1] <= y) == (b[1] <= y)) continue;
     at.push_back(a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
   }
-  std::ranges::sort(at);
+  std::sort(at.begin(), at.end());
   return at;
 }
 
@@ -53,7 +53,7 @@ void fillOutline(Picture& picture, const std::vector<Point2>& outline, const Col
   const int bottom = std::min(picture.height - 1, static_cast<int>(high));
   std::vector<double> share(static_cast<std::size_t>(picture.width));
   for (int y = top; y <= bottom; ++y) {
-    std::ranges::fill(share, 0.0);
+    std::fill(share.begin(), share.end(), 0.0);
     for (int row = 0; row < kRows; ++row) {
       const auto at = crossings(outline, y + (row + 0.5) / kRows);
       for (std::size_t q = 0; q + 1 < at.size(); q += 2) {

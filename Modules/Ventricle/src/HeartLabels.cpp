@@ -51,7 +51,7 @@ std::string listOf(const std::set<Label>& values) {
 double enclosedShare(const std::vector<Volume<Label>>& frames, Label label, Label wall) {
   std::size_t outline = 0, touching = 0;
   for (const Volume<Label>& frame : frames) {
-    if (std::ranges::find(frame.data, wall) == frame.data.end()) continue;
+    if (std::find(frame.data.begin(), frame.data.end(), wall) == frame.data.end()) continue;
     const auto& size = frame.grid.size;
     const auto visit = [&](Label a, Label b) {
       if (a == b || (a != label && b != label)) return;
@@ -137,7 +137,7 @@ HeartRoles findRoles(const std::vector<Volume<Label>>& frames, const HeartLabelO
 
 Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles) {
   Volume<Label> heart(frame.grid, kOutside);
-  parallelFor(frame.size(), [&](std::size_t v) {
+  parallelFor(frame.size(), 1 << 16, [&](std::size_t v) {
     const Label label = frame[v];
     if (label == roles.cavity) heart[v] = kCavity;
     if (label == roles.wall) heart[v] = kWall;

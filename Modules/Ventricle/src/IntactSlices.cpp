@@ -13,7 +13,7 @@ std::vector<bool> cutSlices(const std::vector<Slice>& slices, const Grid& grid,
   const int towardsBase = grid.direction.col(2).dot(axis.direction) > 0 ? -1 : 1;
   const auto whole = [&](int k) {
     if (k < 0 || k >= static_cast<int>(slices.size())) return true;
-    const SliceKind kind = slices[k].kind;
+    const SliceKind kind = slices[static_cast<std::size_t>(k)].kind;
     return kind == SliceKind::Ring || kind == SliceKind::Empty;
   };
   std::vector<bool> cut;

@@ -35,7 +35,7 @@ struct Line {
 /// How far slice k was moved, RAS mm.
 Vector moved(const Grid& grid, const SliceShifts& shift, int k) {
   if (k < 0 || k >= static_cast<int>(shift.size())) return Vector::Zero();
-  return grid.direction.leftCols<2>() * shift[k];
+  return grid.direction.leftCols<2>() * shift[static_cast<std::size_t>(k)];
 }
 
 /// Main axis of weighted points.
@@ -77,8 +77,8 @@ Line axisOfSlices(const Volume<Label>& heart, const SliceShifts& shift,
                   const std::vector<Point>& cavity) {
   std::vector<Centroid> centroids;
   const std::vector<Slice> slices = slicesOf(heart);
-  const auto closed =
-      std::ranges::count_if(slices, [](const Slice& s) { return s.kind == SliceKind::Ring; });
+  const auto closed = std::count_if(slices.begin(), slices.end(),
+                                    [](const Slice& s) { return s.kind == SliceKind::Ring; });
   for (std::size_t k = 0; k < slices.size(); ++k) {
     if (closed >= 3 ? slices[k].kind != SliceKind::Ring : !slices[k].whole()) continue;
     const Eigen::Vector2d index = slices[k].centre.cwiseQuotient(heart.grid.spacing.head<2>());
@@ -145,7 +145,7 @@ Line firstAxis(const Volume<Label>& heart, const SliceShifts& shift,
 std::vector<double> heightsAlong(const LongAxis& axis, const std::vector<Point>& cavity) {
   std::vector<double> heights;
   for (const Point& p : cavity) heights.push_back((p - axis.centre).dot(axis.direction));
-  std::ranges::sort(heights);
+  std::sort(heights.begin(), heights.end());
   return heights;
 }
 
@@ -198,7 +198,7 @@ LongAxis findLongAxis(const Volume<Label>& heart, const SliceShifts& shift) {
   // The tapered half holds less than half of the cavity.
   const std::vector<double> heights = heightsAlong(axis, cavity);
   const double middle = 0.5 * (heights.front() + heights.back());
-  const auto below = std::ranges::lower_bound(heights, middle) - heights.begin();
+  const auto below = std::lower_bound(heights.begin(), heights.end(), middle) - heights.begin();
   if (2 * below < static_cast<std::ptrdiff_t>(heights.size())) axis.direction = -axis.direction;
   return withEndsOf(axis, heart);
 }

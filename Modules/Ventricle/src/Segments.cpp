@@ -24,7 +24,7 @@ constexpr double kLeastShare = 0.1;
 /// Middle of the cavity at the height of a voxel.
 Point middleAt(const WallThickness& wall, const LongAxis& axis, const Grid& grid, const Point& x,
                int k) {
-  const Slice& slice = wall.slices[k];
+  const Slice& slice = wall.slices[static_cast<std::size_t>(k)];
   if (!wall.bySlice || !slice.whole()) return axis.foot(x);
   const Eigen::Vector2d index = slice.centre.cwiseQuotient(grid.spacing.head<2>());
   return grid.toWorld(Vector(index[0], index[1], k));
@@ -54,7 +54,7 @@ Segments segmentsOf(const Volume<Label>& heart, const WallThickness& wall, const
                     const Orientation& orientation) {
   Segments result;
   result.segmentOf = Volume<std::uint8_t>(heart.grid, 0);
-  parallelFor(heart.size(), [&](std::size_t v) {
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
     if (heart[v] != kWall) return;
     const auto s = heart.grid.subscripts(v);
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));

@@ -104,7 +104,7 @@ SliceAlignment alignSlices(const std::vector<Volume<Label>>& hearts, const LongA
   found.shift.assign(static_cast<std::size_t>(grid.size[2]), Eigen::Vector2d::Zero());
   double squares = 0, slices = 0;
   for (const auto& [k, shift] : commonShifts(frames)) {
-    found.shift[k] = shift;
+    found.shift[static_cast<std::size_t>(k)] = shift;
     squares += shift.squaredNorm();
     slices += 1;
     found.largest = std::max(found.largest, shift.norm());

@@ -77,7 +77,7 @@ View viewOf(const Beat& beat, const Frame& frame) {
 /// White at the brightest of the heart, so that fat around it does not leave it dim.
 report::ColourScale greyOf(const Volume<float>& image, const Volume<Label>& heart) {
   Volume<float> subject(heart.grid);
-  std::ranges::copy(heart.data, subject.data.begin());
+  std::copy(heart.data.begin(), heart.data.end(), subject.data.begin());
   return report::greyScale(image, &subject);
 }
 
@@ -129,7 +129,7 @@ std::vector<std::int32_t> aroundAxis(const Beat& beat, const Frame& frame, int k
     const Point x = wall.annulus.world(number);
     sorted.emplace_back(beat.orientation.angleDeg(frame.axis, x, frame.axis.foot(x)), number);
   }
-  std::ranges::sort(sorted);
+  std::sort(sorted.begin(), sorted.end());
   std::vector<std::int32_t> numbers;
   for (const auto& [angle, number] : sorted) numbers.push_back(number);
   return numbers;
@@ -150,7 +150,8 @@ void drawBoundary(Canvas& canvas, const View& view, const WallThickness& wall,
     const Point2 q = view.at(p) - view.corner - Point2(0.5 * kTile, 0.5 * kTile);
     ends.emplace_back(std::atan2(q[1], q[0]), p);
   }
-  std::ranges::sort(ends, [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::sort(ends.begin(), ends.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Point2> line;
   const auto flush = [&] {
     if (line.size() > 1) canvas.stroke(line, colour, 1.6);
@@ -221,7 +222,7 @@ std::vector<SliceRow> shownRows(const Frame& frame) {
   std::vector<SliceRow> rows = sliceRows(frame);
   std::erase_if(rows, [](const SliceRow& r) { return r.kind == SliceKind::CavityOnly; });
   if (frame.heart.grid.direction.col(2).dot(frame.axis.direction) < 0) {
-    std::ranges::reverse(rows);
+    std::reverse(rows.begin(), rows.end());
   }
   if (rows.size() <= kMostSlices) return rows;
   std::vector<SliceRow> some;
@@ -308,7 +309,8 @@ Canvas drawSlices(const Beat& beat, std::size_t f, const Volume<float>* image,
     view.corner = Point2(kTile * static_cast<double>(q % kColumns),
                          kHead + (kTile + kCaption) * static_cast<double>(q / kColumns));
     const Eigen::Vector2d centre =
-        placed.measures->slices[k].centre.cwiseQuotient(grid.spacing.head<2>());
+        placed.measures->slices[static_cast<std::size_t>(k)].centre.cwiseQuotient(
+            grid.spacing.head<2>());
     view.middle = grid.toWorld(Vector(centre[0], centre[1], k));
     drawSlice(canvas, view, beat, frame, k, tracer, image, grey);
     const Point2 below = view.corner + Point2(0.5 * kTile, kTile + 12);

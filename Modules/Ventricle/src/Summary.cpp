@@ -17,7 +17,7 @@ std::optional<double> known(double value) {
 std::int64_t countOf(const Frame& frame, LeftOut why) {
   if (!frame.measures) return 0;
   const auto& reasons = frame.measures->reasons.data;
-  return std::ranges::count(reasons, static_cast<std::uint8_t>(why));
+  return std::count(reasons.begin(), reasons.end(), static_cast<std::uint8_t>(why));
 }
 
 void describeVolumes(Results& t, const Frame& ed, const Frame& es, double ejection, bool beats) {
@@ -86,9 +86,9 @@ void describe(Results& t, const HeartSummary& s) {
   t.share("open_share_ed", "Open at the base",
           "Share of the cavity's surface at end-diastole that has no wall.", s.openShare);
   t.count("frames", "Frames", "", beat.frames.size());
-  t.count(
-      "frames_with_wall", "Frames with a wall", "",
-      std::ranges::count_if(beat.frames, [](const Frame& f) { return f.segments.has_value(); }));
+  t.count("frames_with_wall", "Frames with a wall", "",
+          std::count_if(beat.frames.begin(), beat.frames.end(),
+                        [](const Frame& f) { return f.segments.has_value(); }));
   t.count("frame_ed", "Frame at end-diastole", "", ed.number);
   t.count("frame_es", "Frame at end-systole", "",
           beats ? std::optional<std::int64_t>(es.number) : std::nullopt);

@@ -46,11 +46,12 @@ std::string segmentTable(const Beat& beat) {
   for (const Frame& frame : beat.frames) {
     if (!frame.segments) continue;
     for (const Segment& row : frame.segments->rows) {
-      text += line({std::to_string(row.number), segmentName(row.number, beat.oriented()),
-                    std::to_string(frame.number), number(row.thickness), number(row.deviation),
-                    number(row.thickening, 1), number(row.lowest), number(row.highest),
-                    number(row.plain), std::to_string(row.voxels), std::to_string(row.leftOut),
-                    number(row.thickness - diastole[row.number - 1].thickness)});
+      text += line(
+          {std::to_string(row.number), segmentName(row.number, beat.oriented()),
+           std::to_string(frame.number), number(row.thickness), number(row.deviation),
+           number(row.thickening, 1), number(row.lowest), number(row.highest), number(row.plain),
+           std::to_string(row.voxels), std::to_string(row.leftOut),
+           number(row.thickness - diastole[static_cast<std::size_t>(row.number - 1)].thickness)});
     }
   }
   return text;

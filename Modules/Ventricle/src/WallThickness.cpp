@@ -67,7 +67,7 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
   // A valve plane lies across the axis; contacts along the side of the cavity are gaps in the wall.
   if (std::abs(normal.dot(axis.direction)) < 0.5) return;
   const double tolerance = 0.5 * heart.grid.spacing.maxCoeff();
-  parallelFor(heart.size(), [&](std::size_t v) {
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
@@ -76,7 +76,7 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
 }
 
 bool has(const Volume<Label>& heart, Label label) {
-  return std::ranges::find(heart.data, label) != heart.data.end();
+  return std::find(heart.data.begin(), heart.data.end(), label) != heart.data.end();
 }
 
 /// Solves on the tissue and keeps the lengths.
@@ -108,10 +108,10 @@ Eigen::Vector2d inSlice(const harmonic::Annulus& annulus, std::int32_t n,
 /// In thick slices the base is the plane across the axis at the cavity's end: what lies beyond it
 /// in slices that it may cut is insulated.
 void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const LongAxis& axis) {
-  parallelFor(heart.size(), [&](std::size_t v) {
+  parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
-    if (!cut[s[2]]) return;
+    if (!cut[static_cast<std::size_t>(s[2])]) return;
     const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
     if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
   });
@@ -162,7 +162,7 @@ void leaveOutAtBase(WallThickness& wall, const LongAxis& axis) {
   const std::vector<bool> cut = cutSlices(wall.slices, grid, axis);
   parallelFor(wall.plain.size(), 256, [&](std::size_t n) {
     const auto number = static_cast<std::int32_t>(n);
-    if (!cut[wall.annulus.index(number)[2]]) return;
+    if (!cut[static_cast<std::size_t>(wall.annulus.index(number)[2])]) return;
     const Point x = wall.annulus.world(number);
     const Point inner = x + wall.correspondence.innerPoint[n].cast<double>();
     const Point outer = x + wall.correspondence.outerPoint[n].cast<double>();
@@ -209,7 +209,8 @@ std::vector<std::vector<Point>> ringEnds(const WallThickness& wall, const Volume
       auto q = s;
       q[d / 2] += d % 2 ? 1 : -1;
       if (!grid.contains(q[0], q[1], q[2]) || marked(q[0], q[1], q[2]) != kBeyondBase) continue;
-      ends[s[2]].push_back(grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
+      ends[static_cast<std::size_t>(s[2])].push_back(
+          grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
     }
   }
   return ends;

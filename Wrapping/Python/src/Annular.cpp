@@ -78,11 +78,10 @@ py::dict arraysOf(const correspondence::Measurement& m) {
 }
 
 constexpr const char* kReturns =
-    R"(
-
-Returns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and
-outer_distance (L0, L1, mm), depth, layers, valid; inner_point and outer_point
-(I, J, K, 3), RAS mm; affine; and summary, the numbers of summary.json.)";
+    "\n\nReturns a dict of arrays (I, J, K): harmonic (u), thickness, inner_distance and\n"
+    "outer_distance (L0, L1, mm), depth, layers, valid; inner_point and outer_point\n"
+    "(I, J, K, 3), RAS mm;\n"
+    "affine; and summary, the numbers of summary.json.";
 
 }  // namespace
 
@@ -141,10 +140,10 @@ void bindAnnular(py::module_& m) {
                         "trajectories"_a = grid.trajectories, "lost"_a = grid.lost,
                         "degenerate"_a = grid.degenerate);
       },
-      R"(A grid that follows the tissue: points (P, 3), RAS mm, at equal depths along trajectories,
-cells (C, 8), hexahedra in VTK's order ((C, 4) of a planar tissue), depth (P,) in [0, 1],
-thickness (P,) of the trajectory, mm, trajectories, how many were lost, and how many cells
-were left out because they are degenerate.)",
+      "A grid that follows the tissue: points (P, 3), RAS mm, at equal depths along trajectories,\n"
+      "cells (C, 8), hexahedra in VTK's order ((C, 4) of a planar tissue), depth (P,) in [0, 1],\n"
+      "thickness (P,) of the trajectory, mm, trajectories, how many were lost, and how many cells\n"
+      "were left out because they are degenerate.",
       "labels"_a, "levels"_a, "affine"_a, "recover_sulci"_a = true, "progress"_a = py::none());
   noteKeywords<ThicknessOptions>(m, "thickness");
   noteKeywords<LevelThicknessOptions>(m, "thickness_of_levels");

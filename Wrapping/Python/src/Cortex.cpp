@@ -90,11 +90,14 @@ void bindCortex(py::module_& m) {
                        : surface::buildSurfaces(tissue, options.surface, monitor);
         }));
       },
-      R"(White, middle and outer surface of the cortical ribbon: white, mid and pial, vertices
-(V, 3), RAS mm, that correspond by their number, common faces (F, 3), thickness and sulcal_depth in
-mm and curvature in mm^-1, (V,), and the topological defects that were corrected.  Tissue
-that runs out of the image gives sheets with a rim.  With an `image` on the labels' grid, such
-as a T1, both borders are placed by it.)",
+      "White, middle and outer surface of the cortical ribbon: white, mid and pial, vertices (V, "
+      "3),\n"
+      "RAS mm, that correspond by their number, common faces (F, 3), thickness and sulcal_depth "
+      "in\n"
+      "mm and curvature in mm^-1, (V,), and the topological defects that were corrected.  Tissue\n"
+      "that runs out of the image gives sheets with a rim.  With an `image` on the labels' grid, "
+      "such\n"
+      "as a T1, both borders are placed by it.",
       "labels"_a, "affine"_a, "image"_a = py::none(), "progress"_a = py::none());
   bindFolding(m);
 }

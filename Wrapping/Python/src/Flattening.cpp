@@ -43,12 +43,13 @@ void bindFlatMaps(py::module_& m) {
                         "rim_crossings"_a = map.rimCrossings, "iterations"_a = map.iterations,
                         "termination"_a = std::string(nameOf(map.termination)));
       },
-      R"(The flat map of a surface with a rim, or of the listed faces: `positions` (N, 2) in mm,
-`faces` (F, 3) of these N vertices, counter-clockwise; `vertices` (N,) and `region` (F,) are
-their numbers in the surface.  No face is turned over and no part lies on another:
-`turned_over` and `rim_crossings`, both exact, are 0; so it is of a run that is stopped
-where `progress(fraction, activity)` returns False.  `frames` holds the
-positions on the way from a circle, as many as `frames=` asks for.)",
+      "The flat map of a surface with a rim, or of the listed faces: `positions` (N, 2) in mm,\n"
+      "`faces` (F, 3) of these N vertices, counter-clockwise; `vertices` (N,) and `region` (F,) "
+      "are\n"
+      "their numbers in the surface.  No face is turned over and no part lies on another:\n"
+      "`turned_over` and `rim_crossings`, both exact, are 0; so it is of a run that is stopped\n"
+      "where `progress(fraction, activity)` returns False.  `frames` holds the\n"
+      "positions on the way from a circle, as many as `frames=` asks for.",
       "positions"_a, "faces"_a, "region"_a = py::none(), "progress"_a = py::none());
   defWithOptions<flattening::CutOptions>(
       m, "relief_cuts",

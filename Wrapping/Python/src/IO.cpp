@@ -43,7 +43,8 @@ io::LabelMap labelsOf(const Eigen::Matrix<Label, Eigen::Dynamic, 1>& keys, const
     }
     labels.table.push_back(entry);
   }
-  std::ranges::sort(labels.table, [](const auto& a, const auto& b) { return a.key < b.key; });
+  std::sort(labels.table.begin(), labels.table.end(),
+            [](const auto& a, const auto& b) { return a.key < b.key; });
   return labels;
 }
 

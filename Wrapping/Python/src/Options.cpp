@@ -13,8 +13,8 @@ namespace explica::python {
 namespace {
 
 std::string pythonName(std::string name) {
-  std::ranges::replace(name, '-', '_');
-  std::ranges::replace(name, '.', '_');
+  std::replace(name.begin(), name.end(), '-', '_');
+  std::replace(name.begin(), name.end(), '.', '_');
   return name == "lambda" ? "lambda_" : name;  // the one option that is a word of Python's own
 }
 
@@ -60,9 +60,10 @@ void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& 
                      const std::vector<std::string>& alsoAllowed) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    if (std::ranges::find(alsoAllowed, name) != alsoAllowed.end()) continue;
-    const auto option = std::ranges::find_if(
-        options, [&](const auto& candidate) { return pythonName(candidate.name) == name; });
+    if (std::find(alsoAllowed.begin(), alsoAllowed.end(), name) != alsoAllowed.end()) continue;
+    const auto option = std::find_if(options.begin(), options.end(), [&](const auto& candidate) {
+      return pythonName(candidate.name) == name;
+    });
     if (option == options.end()) {
       throw py::type_error("unexpected keyword '" + name +
                            "'; known: " + joined(options, ", ", [](const auto& one) {

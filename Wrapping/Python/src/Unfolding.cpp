@@ -146,11 +146,11 @@ void bindUnfolding(py::module_& m) {
           return unfolding::unfold(mesh, chosen, viewpoints, options, monitor);
         }));
       },
-      R"(Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions
-(V, 3), faces, termination, flag ('', 'held', 'worse' or 'stretched'),
-iteration (whose state it is), collar (faces that moved outside the region), history (one
-dict an iteration) and frames
-[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.)",
+      "Unfold the region (its vertices) of a surface for viewpoints, RAS mm.  Returns positions\n"
+      "(V, 3), faces, termination, flag ('', 'held', 'worse' or 'stretched'),\n"
+      "iteration (whose state it is), collar (faces that moved outside the region), history (one\n"
+      "dict an iteration) and frames\n"
+      "[(visibility, positions)].  `progress(fraction, activity)` may return False to stop.",
       "positions"_a, "faces"_a, "region"_a, "viewpoints"_a, "progress"_a = py::none());
   m.def(
       "distortion",
@@ -168,9 +168,10 @@ dict an iteration) and frames
             "edge_strain_mean"_a = d.edgeStrainMean, "edge_strain_p95"_a = d.edgeStrainP95);
       },
       "positions"_a, "faces"_a, "deformed"_a, "region"_a,
-      R"(How the listed faces differ between two embeddings of the same mesh, the surface and
-`deformed` (V, 3), mm: area_ratio and angle_error_rad of each face, edge_strain of each edge,
-their means and maxima.)");
+      "How the listed faces differ between two embeddings of the same mesh, the surface and\n"
+      "`deformed` (V, 3), mm: area_ratio and angle_error_rad of each face, edge_strain of each "
+      "edge,\n"
+      "their means and maxima.");
   m.def(
       "backfacing_share",
       [](const PositionsIn& positions, const FacesIn& faces,

@@ -34,9 +34,9 @@ void bindVisibility(py::module_& m) {
                         "face_flux"_a = std::move(value.faceFlux));
       },
       "positions"_a, "faces"_a, "viewpoints"_a, "region"_a = py::none(),
-      R"(Average visibility of a region's faces (without region: all) from viewpoints, RAS mm:
-value in [-1, 1], area in mm^2, gradient (V, 3) in 1/mm, which ascends, and face_flux, the
-flux density of each region face in [-1, 1].)");
+      "Average visibility of a region's faces (without region: all) from viewpoints, RAS mm:\n"
+      "value in [-1, 1], area in mm^2, gradient (V, 3) in 1/mm, which ascends, and face_flux, the\n"
+      "flux density of each region face in [-1, 1].");
   m.def(
       "vertex_flux",
       [](const PositionsIn& positions, const FacesIn& faces, const Viewpoints& viewpoints) {
