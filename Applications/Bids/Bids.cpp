@@ -128,10 +128,10 @@ void requireSides(const BidsSettings& s, const study::Participant& participant) 
   if (!files.labels || files.layout == study::SubjectLayout::FreeSurfer) return;
   if (files.left.white && files.right.white) return;
   if (pipeline::labelsHaveSides(*files.labels)) return;
-  throw InvalidInput(files.labels->string() +
-                     ": its labels do not tell left from right; name the hemisphere that it holds "
-                     "(--hemisphere L), or give a segmentation with FreeSurfer's labels "
-                     "(*_desc-aseg_dseg.nii.gz)");
+  throw InvalidInput(
+      files.labels->string() +
+      ": its labels do not tell left from right; name the hemisphere that it holds (--hemisphere "
+      "L), or give a segmentation with FreeSurfer's labels (*_desc-aseg_dseg.nii.gz)");
 }
 
 /// How the template was placed in a participant's T1 by an earlier study.

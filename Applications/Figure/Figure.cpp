@@ -137,10 +137,10 @@ void give(const std::string& file, std::vector<Shown>& all) {
     }
   }
   if (given) return;
-  throw InvalidInput("'" + file + "': " + std::to_string(count) + " vertices" +
-                     (side ? " of the " + std::string(nameOf(*side)) + " hemisphere" : "") +
-                     ", which no surface of the figure has; name a surface of the same mesh and "
-                     "side");
+  throw InvalidInput(
+      "'" + file + "': " + std::to_string(count) + " vertices" +
+      (side ? " of the " + std::string(nameOf(*side)) + " hemisphere" : "") +
+      ", which no surface of the figure has; name a surface of the same mesh and side");
 }
 
 std::vector<Shown> readFiles(const FigureSettings& s) {

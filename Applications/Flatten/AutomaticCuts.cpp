@@ -75,10 +75,9 @@ void report(Context& context, const flattening::CutPlan& plan,
   const double length = plan.length();
   context.results(plan);
   if (plan.termination == Termination::Interrupted) {
-    context.info(
-        printed("stopped while cuts were sought: %zu so far, %.0f mm in all; --resume goes on "
-                "from them",
-                plan.cuts.size(), length));
+    context.info(printed(
+        "stopped while cuts were sought: %zu so far, %.0f mm in all; --resume goes on from them",
+        plan.cuts.size(), length));
     return;
   }
   context.info(printed("%zu cuts, %.0f mm in all; edge strain %.3f without, %.3f with",

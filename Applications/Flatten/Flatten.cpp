@@ -87,19 +87,18 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .options("Reading", s.reading)
       .inputOption("reference", FileKind::Surface,
                    "surface with the same vertices whose areas and lengths count", s.reference)
-      .option(
-          "Region",
-          Field{"cuts", "",
-                "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; auto: "
-                "cuts are found; template: those of --template"},
-          s.cuts)
+      .option("Region",
+              Field{"cuts", "",
+                    "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; "
+                    "auto: cuts are found; template: those of --template"},
+              s.cuts)
       .option("Region", Field{"template", "", "whose cuts they are, as of register"},
               s.templateName)
       .option("Region", Field{"cut-name", "", "only those of the template's cuts; all by default"},
               s.cutNames)
       .inputOption("sphere", FileKind::Surface,
-                   "the surface's sphere in register with the template "
-                   "(default: ?h.sphere.reg beside it, or of explica run)",
+                   "the surface's sphere in register with the template (default: ?h.sphere.reg "
+                   "beside it, or of explica run)",
                    s.sphere, "Region")
       .inputOption("cortex", FileKind::VertexData,
                    "for --cuts auto, where there is cortex: label, annot, or map (not 0)", s.cortex,

@@ -107,9 +107,9 @@ TemplateCuts readTemplateCuts(Context& context, const FlattenSettings& s,
   const std::string name = s.templateName.value_or(kDefaultTemplate);
   const CortexTemplate files = findTemplate(context, name, structure);
   if (files.cuts.empty() && files.white.empty()) {
-    throw InvalidInput("template '" + name +
-                       "': has neither cuts (?h.cuts.label.gii) nor a white "
-                       "surface to find them on");
+    throw InvalidInput(
+        "template '" + name +
+        "': has neither cuts (?h.cuts.label.gii) nor a white surface to find them on");
   }
   const io::LabelMap labels = files.cuts.empty()
                                   ? foundOnTemplate(context, files, s.cut)

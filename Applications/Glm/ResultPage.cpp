@@ -196,8 +196,8 @@ report::ReportTable clustersOf(const Observations& o, const GlmResults& r, std::
   table.id = "clusters-" + fileName(r.contrasts[k].name);
   table.title = r.contrasts[k].name + ": clusters";
   table.caption =
-      "P is family-wise and two-sided for t: of the peak, the extent and the mass by "
-      "permutation, then by random field theory. All are in clusters.tsv.";
+      "P is family-wise and two-sided for t: of the peak, the extent and the mass by permutation, "
+      "then by random field theory. All are in clusters.tsv.";
   table.columns = {"place of the peak", "t or F",         "effect",   "area, mm²",
                    "vertices",          "P peak",         "P extent", "P mass",
                    "P field, peak",     "P field, extent"};

@@ -54,9 +54,9 @@ What is written is tested once more: faces that cross in it and did not at the s
       .reuseOutputIf(s.resume)
       .output("inflated.surf.gii", FileKind::Surface, "the inflated surface")
       .output("*.inflated", FileKind::Surface, "the same as FreeSurfer writes it")
-      .output("visibility.shape.gii", FileKind::VertexData,
-              "share of the view that arrives before and after, seen from somewhere before and "
-              "after")
+      .output(
+          "visibility.shape.gii", FileKind::VertexData,
+          "share of the view that arrives before and after, seen from somewhere before and after")
       .output("distortion.shape.gii", FileKind::VertexData,
               "area ratio, angle change in degrees, edge strain")
       .varyingOutput("evolution.tsv", FileKind::Table, "one row per iteration")
@@ -101,8 +101,8 @@ std::vector<geometry::FacePair> checkStart(Context& context, const InflateSettin
                                           repair.moveMax, repair.moveMean});
   if (!list.empty()) {
     context.warn(
-        printed("%zu pairs of faces intersect at the start (intersections.tsv); %zu were parted "
-                "by moving %zu vertices by %.3f mm at most, the others stay as they are",
+        printed("%zu pairs of faces intersect at the start (intersections.tsv); %zu were parted by "
+                "moving %zu vertices by %.3f mm at most, the others stay as they are",
                 list.size(), parted, repair.moved.size(), repair.moveMax));
   }
   return repair.after;

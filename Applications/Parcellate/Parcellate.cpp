@@ -46,15 +46,14 @@ void declare(Declaration& d, ParcellateSettings& s) {
           "subjects, with ?h.sulc; files on fsaverage3 to fsaverage need none. Without --atlas the "
           "regions are those of the template.")
       .reference(
-          "Artaechevarria, Munoz-Barrutia, Ortiz-de-Solorzano 2009, IEEE Trans. Medical "
-          "Imaging 28(8):1266-1277")
+          "Artaechevarria, Munoz-Barrutia, Ortiz-de-Solorzano 2009, IEEE Trans. Medical Imaging "
+          "28(8):1266-1277")
       .example("explica parcellate bert/surf --atlas fsaverage/label/lh.aparc.annot --out regions",
                "fsaverage's Desikan-Killiany regions on a FreeSurfer subject")
-      .input(
-          "SURFACES", FileKind::Folder,
-          "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc), or a surface "
-          "folder of explica run with register's beside it",
-          s.folder)
+      .input("SURFACES", FileKind::Folder,
+             "folder with the person's ?h.sphere.reg or sphere.reg.surf.gii (and sulc), or a "
+             "surface folder of explica run with register's beside it",
+             s.folder)
       .inputOption("atlas", FileKind::VertexLabel, "labels of a template or of a labelled person",
                    s.atlases)
       .option("Input",
@@ -64,11 +63,11 @@ void declare(Declaration& d, ParcellateSettings& s) {
       .option("Input",
               Field{"hemisphere", "", "L or R, where neither the atlas' name nor the sphere says"},
               s.hemisphere)
-      .option("Volume",
-              Field{"volume", "",
-                    "also label the voxels of which at least half lies between white and pial "
-                    "surface"},
-              s.volume)
+      .option(
+          "Volume",
+          Field{"volume", "",
+                "also label the voxels of which at least half lies between white and pial surface"},
+          s.volume)
       .option("Volume",
               Field{"ribbon", "", "folder with white and pial surface, where SURFACES has none"},
               s.ribbon)
@@ -130,8 +129,8 @@ maps::LabelledSphere readAtlas(Context& context, const NamedAtlas& named, const 
   const auto known = sphere ? std::nullopt : fsaverageOf(labels.keys.size());
   if (!sphere && !known) {
     throw InvalidInput("'" + file + "': no " + prefix +
-                       "sphere.reg is beside it or in ../surf, and "
-                       "fsaverage's spheres have other numbers of vertices than its " +
+                       "sphere.reg is beside it or in ../surf, and fsaverage's spheres have other "
+                       "numbers of vertices than its " +
                        std::to_string(labels.keys.size()));
   }
   atlas.sphere = sphere ? readSphere(context, *sphere) : *known;

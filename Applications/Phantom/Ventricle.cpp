@@ -19,8 +19,8 @@ void declare(Declaration& d, PhantomVentricleSettings& s) {
           R"(Focal distance 40 mm, sinh mu 0.6 and 0.9, the base 15 mm above the centre. Label 3 is a right ventricle, 4 what lies beyond the base: give it to --insulated. Near the base, which trajectories cross obliquely, the answers are not exact. With --frames the ventricle beats: its wall keeps its volume, its cavity ejects the share --ejection, slices may be thick and tilted as in cine MRI, labels are 1 cavity, 2 wall, 3 right ventricle, and the other outputs are tables.)")
       .example("explica phantom ventricle --size 120 --out ventricle", "120 voxels a side")
       .example(
-          "explica phantom ventricle --size 90 --spacing 1.4 --slice 8 --frames 6 --tilt 10 "
-          "--out beat",
+          "explica phantom ventricle --size 90 --spacing 1.4 --slice 8 --frames 6 --tilt 10 --out "
+          "beat",
           "Six frames of thick, tilted slices for 'explica heart beat/frame-*.nii.gz'")
       .options("Beat", s.beat)
       .output("frame-*.nii.gz", FileKind::LabelVolume, "with --frames: labels of each frame")

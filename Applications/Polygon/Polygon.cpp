@@ -107,8 +107,8 @@ Task taskOf(Context& context, const PolygonSettings& s) {
 
 std::string tableOf(const std::vector<planar::PolygonIteration>& history) {
   std::string table =
-      "iteration\tvisibility\tflux_variance\tlength\tlength_error\tleast_distance\tknot_energy\t"
-      "step\tseconds\n";
+      "iteration\tvisibility\tflux_variance\tlength\tlength_error\tleast_distance\tknot_"
+      "energy\tstep\tseconds\n";
   for (const planar::PolygonIteration& row : history) {
     table += printed("%d\t%.9g\t%.9g\t%.9g\t%.3g\t%.6g\t%.9g\t%.6g\t%.6f\n", row.iteration,
                      row.visibility, row.variance, row.length, row.lengthError, row.leastDistance,

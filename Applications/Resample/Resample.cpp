@@ -74,12 +74,11 @@ void declare(Declaration& d, ResampleSettings& s) {
       .inputOption("amounts", FileKind::VertexData,
                    "maps of amounts at vertices, such as areas and volumes: their sums stay",
                    s.amounts, "Weights")
-      .option(
-          "Target",
-          Field{"space", "",
-                "name of the space in file names, or folder of the template, where --from is in "
-                "register with another one than the target's name says"},
-          s.space)
+      .option("Target",
+              Field{"space", "",
+                    "name of the space in file names, or folder of the template, where --from is "
+                    "in register with another one than the target's name says"},
+              s.space)
       .needs({"template"}, {"to=fs_LR-32k"})
       .needs({"areas"}, {"method=adaptive", "amounts"})
       .output("*_space-*", FileKind::Any,

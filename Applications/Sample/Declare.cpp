@@ -20,8 +20,8 @@ void declareSample(Declaration& d, SampleSettings& s) {
           "volume.")
       .reference("Waehnert and others 2014, NeuroImage 93:210-220 (depths of equal volume)")
       .example(
-          "explica sample bold.nii.gz --surfaces sub-01/anat --hemisphere L --depths 5 "
-          "--to-volume from-boldref_to-T1w.txt --labels lh.aparc.annot --out sampled",
+          "explica sample bold.nii.gz --surfaces sub-01/anat --hemisphere L --depths 5 --to-volume "
+          "from-boldref_to-T1w.txt --labels lh.aparc.annot --out sampled",
           "A functional series at five depths, and its profile in each region")
       .example("explica sample t1map.nii.gz --thickness thickness --depths 20 --out layers",
                "Twenty layers along the trajectories of explica thickness")
@@ -45,10 +45,10 @@ void declareSample(Declaration& d, SampleSettings& s) {
           s.depthKind)
       .option(
           "Depths",
-          Field{"across", "",
-                "one map of all depths: their mean or maximum, of labels the most frequent; "
-                "ribbon: mean over the volume of the faces about a vertex, as Workbench's ribbon "
-                "mapping"},
+          Field{
+              "across", "",
+              "one map of all depths: their mean or maximum, of labels the most frequent; ribbon: "
+              "mean over the volume of the faces about a vertex, as Workbench's ribbon mapping"},
           s.across)
       .option("Values", Field{"interpolate", "", "how values between voxel centres are made"},
               s.interpolate)
@@ -63,10 +63,9 @@ void declareSample(Declaration& d, SampleSettings& s) {
       .inputOption("points", FileKind::Table,
                    "table with columns x, y, z (RAS mm): finds vertex, depth, distance, region",
                    s.points, "Regions")
-      .output(
-          "*.func.gii", FileKind::VertexData,
-          "NAME.func.gii: a map a depth; of a series NAME_depth-D.func.gii: a map a frame; with "
-          "--across NAME.func.gii")
+      .output("*.func.gii", FileKind::VertexData,
+              "NAME.func.gii: a map a depth; of a series NAME_depth-D.func.gii: a map a frame; "
+              "with --across NAME.func.gii")
       .output(
           "*.label.gii", FileKind::VertexLabel,
           "NAME.label.gii of a label volume; NAME_depth-D.label.gii if there are several depths")

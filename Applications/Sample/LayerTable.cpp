@@ -157,8 +157,8 @@ void sampleVolume(Context& context, const SampleSettings& s, const Tissue& tissu
 Termination sampleLayers(Context& context, const SampleSettings& s) {
   if (s.cortex.folder || s.cortex.white || s.points || !s.labelVolumes.empty()) {
     throw UsageError(
-        "--thickness takes volumes and --labels; surfaces, --points and --label-volume "
-        "are for sampling on surfaces");
+        "--thickness takes volumes and --labels; surfaces, --points and --label-volume are for "
+        "sampling on surfaces");
   }
   if (s.across != sampling::Across::None || s.depthKind != sampling::DepthKind::Depth) {
     throw UsageError(

@@ -53,9 +53,9 @@ std::optional<Volume<std::uint8_t>> maskFor(const Grid& volume, const SampleSett
   if (!s.mask) return {};
   const Volume<float> read = io::readScalars(*s.mask, {.allowNonFinite = true}).volume;
   if (!sameGrid(read.grid, volume, 0.1)) {
-    throw InvalidInput("'" + *s.mask +
-                       "': its grid is not that of the volume it is to mask; resample "
-                       "it to that grid");
+    throw InvalidInput(
+        "'" + *s.mask +
+        "': its grid is not that of the volume it is to mask; resample it to that grid");
   }
   Volume<std::uint8_t> mask(read.grid);
   for (std::size_t v = 0; v < mask.size(); ++v) {

@@ -208,8 +208,8 @@ class SurfaceSampling {
     const auto sum = std::count(known.begin(), known.end(), 1);
     if (sum == 0) {
       throw InvalidInput("'" + path +
-                         "': is known at no vertex of the surface; do both lie in the "
-                         "same space? (--to-volume, --surface-space and --fs-volume say how)");
+                         "': is known at no vertex of the surface; do both lie in the same space? "
+                         "(--to-volume, --surface-space and --fs-volume say how)");
     }
     const double share = static_cast<double>(sum) / static_cast<double>(known.size());
     summary_.known.emplace_back(name, share);

@@ -123,8 +123,8 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   const auto doubt = isDoubted ? moments((made.thickness.array() > 0).select(doubtful, kNaN))
                                : std::vector<maps::RegionMoments>();
   std::ostringstream table;
-  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\t"
-           "thickness_nearest_mean_mm"
+  table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\tthickness_"
+           "nearest_mean_mm"
         << (isDoubted ? "\tdoubtful_share" : "") << "\tvolume_mm3\n";
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < all.size(); ++r) {

@@ -16,10 +16,9 @@ void declareSurfaceOutputs(Declaration& d) {
               "thickness by both measures, mm, the one asked for first; 0 where there is no grey "
               "matter")
       .output("valid.shape.gii", FileKind::VertexData, "1 where the thickness is defined, else 0")
-      .output(
-          "doubt.shape.gii", FileKind::VertexData,
-          "with --image: standard deviation of the white and of the outer border's place, mm; a "
-          "voxel where the image shows no border")
+      .output("doubt.shape.gii", FileKind::VertexData,
+              "with --image: standard deviation of the white and of the outer border's place, mm; "
+              "a voxel where the image shows no border")
       .output("curvature.shape.gii", FileKind::VertexData,
               "mean curvature of the white surface, 1/mm, positive in sulci")
       .output("sulc.shape.gii", FileKind::VertexData,
@@ -59,8 +58,8 @@ void declareVolumes(Declaration& d, SurfaceSettings& s) {
                    s.t2)
       .option("TissueInputs",
               Field{"level", "",
-                    "value on the boundaries of level volumes (default: half the "
-                    "largest value of shares, 0 of distances)"},
+                    "value on the boundaries of level volumes (default: half the largest value of "
+                    "shares, 0 of distances)"},
               s.level);
 }
 
@@ -94,8 +93,8 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .example("explica surface --inner-level wm.nii.gz --grey-share gm.nii.gz --out brain",
                "From tissue probabilities, with sub-voxel boundaries")
       .example(
-          "explica surface --white-surface lh.white --pial-surface lh.pial --fs-volume "
-          "orig.mgz --surface-space tkr --out left",
+          "explica surface --white-surface lh.white --pial-surface lh.pial --fs-volume orig.mgz "
+          "--surface-space tkr --out left",
           "FreeSurfer's surfaces, checked and measured");
   declareVolumes(d, s);
   d.inputOption("white-surface", FileKind::Surface, "white surface that is there already",
@@ -129,19 +128,19 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .option(
           "Surface",
           Field{"sheet", "",
-                "whether the surfaces may end in rims, with the topology of the tissue, instead "
-                "of being closed: where grey matter runs out of the image (auto), always, never"},
+                "whether the surfaces may end in rims, with the topology of the tissue, instead of "
+                "being closed: where grey matter runs out of the image (auto), always, never"},
           s.sheet)
-      .option("Output",
-              Field{"thickness-measure", "",
-                    "what comes first in thickness.shape.gii, and its means: length of the "
-                    "trajectory, or the mean of the nearest distances both ways, as FreeSurfer "
-                    "has it"},
-              s.thicknessMeasure)
+      .option(
+          "Output",
+          Field{"thickness-measure", "",
+                "what comes first in thickness.shape.gii, and its means: length of the trajectory, "
+                "or the mean of the nearest distances both ways, as FreeSurfer has it"},
+          s.thicknessMeasure)
       .option("Output",
               Field{"freesurfer", "",
-                    "write lh.white, lh.pial, lh.thickness and so on, too, into "
-                    "this folder (within --out if relative)"},
+                    "write lh.white, lh.pial, lh.thickness and so on, too, into this folder "
+                    "(within --out if relative)"},
               s.freeSurfer)
       .namesOutput("freesurfer")
       .inputOption("fs-volume", FileKind::Volume,

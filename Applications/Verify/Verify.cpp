@@ -29,8 +29,8 @@ void declare(Declaration& d, VerifySettings& s) {
               Field{"deep", "", "follow the records of the inputs, back to the first"}, s.deep)
       .option("Verification",
               Field{"prov-json", "",
-                    "print the record as W3C PROV-JSON instead of verifying; with --deep "
-                    "those of its inputs too"},
+                    "print the record as W3C PROV-JSON instead of verifying; with --deep those of "
+                    "its inputs too"},
               s.provJson)
       .withoutOutput();
 }

@@ -53,8 +53,8 @@ viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) 
   const std::string name = path.filename().string();
   if (isVolume(path)) {
     throw InvalidInput("'" + path.string() +
-                       "' is a volume: --screenshot draws its slices with surfaces, explica "
-                       "sample puts its values on a surface");
+                       "' is a volume: --screenshot draws its slices with surfaces, explica sample "
+                       "puts its values on a surface");
   }
   if (isLabelFile(path)) {
     opened.labels.push_back(windowLabels(surface, path));

@@ -75,8 +75,7 @@ void list(std::ostringstream& out, const Task& task) {
 std::string overviewText() {
   std::ostringstream out;
   out << "Explica measures layered tissue, such as the cortex or the wall of the heart, and "
-         "unfolds "
-         "it.\n\nUsage: explica COMMAND [arguments] [options]\n";
+         "unfolds it.\n\nUsage: explica COMMAND [arguments] [options]\n";
   for (const Task& task : kTasks) list(out, task);
   if (const auto left = others(); !left.empty()) list(out, {"Other", left});
   out << "\nexplica COMMAND --help says more, with an example.  Exit codes: 0 done, 1 usage, 2 bad "

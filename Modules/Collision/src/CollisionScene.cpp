@@ -70,7 +70,7 @@ BoundsPyramid pyramidOf(const CollisionScene& scene, FeatureKind kind,
     return bounds;
   };
   std::vector<MotionBounds> bounds(items.size());
-  parallelFor(items.size(), 1024, [&](std::size_t n) {
+  parallelFor(items.size(), [&](std::size_t n) {
     const std::int32_t i = items[n];
     bounds[n] = kind == FeatureKind::Vertex ? ofVertex(i)
                 : kind == FeatureKind::Edge ? ofRow(scene.edges().row(i))
@@ -347,7 +347,7 @@ std::vector<Meeting> CollisionScene::updateMeetings(std::span<const Meeting> kno
   const std::vector<Meeting> found = answer(queries, start, motion, reach);
   std::vector<Meeting> kept;
   kept.reserve(known.size());
-  std::copy_if(known.begin(), known.end(), std::back_inserter(kept), [&](const Meeting& m) {
+  std::ranges::copy_if(known, std::back_inserter(kept), [&](const Meeting& m) {
     const auto v = vertices(m.pair);
     return vertexChanged[v[0]] + vertexChanged[v[1]] + vertexChanged[v[2]] + vertexChanged[v[3]] ==
            0;

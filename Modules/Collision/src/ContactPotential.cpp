@@ -114,7 +114,7 @@ double contactEnergy(std::span<const Contact> contacts, const Positions& positio
 std::vector<ContactForce> contactForces(std::span<const Contact> contacts,
                                         const Positions& positions) {
   std::vector<ContactForce> forces(contacts.size());
-  parallelFor(contacts.size(), kGrain, [&](std::size_t n) {
+  parallelFor(contacts.size(), [&](std::size_t n) {
     const Contact& contact = contacts[n];
     const FourPoints x = pointsOf(contact, positions);
     const Proximity proximity = findProximity(contact.kind, x);

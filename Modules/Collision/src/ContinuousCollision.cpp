@@ -78,7 +78,7 @@ bool staysApart(PairKind kind, const FourPoints& x, const FourPoints& y, double 
       (volumeOf(e.a, s.u, s.v) + volumeOf(s.a, e.u, s.v) + volumeOf(s.a, s.u, e.v)) / 3,
       (volumeOf(s.a, e.u, e.v) + volumeOf(e.a, s.u, e.v) + volumeOf(e.a, e.u, s.v)) / 3,
       volumeOf(e.a, e.u, e.v)};
-  const auto [least, most] = std::minmax_element(volume.begin(), volume.end());
+  const auto [least, most] = std::ranges::minmax_element(volume);
   const double room = *least > 0 ? *least : -*most;
   if (!(room > 0)) return false;
   const double area = std::sqrt(std::max({s.u.cross(s.v).squaredNorm(),

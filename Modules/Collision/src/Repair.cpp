@@ -128,7 +128,7 @@ std::vector<FacePair> meetings(const TriangleMesh& a, const std::vector<std::int
     if (pair[0] >= border || pair[1] < border) continue;  // of one surface
     pairs.push_back({partA.faceOrigin[pair[0]], partB.faceOrigin[pair[1] - border]});
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 
@@ -201,9 +201,8 @@ class Order {
 
   static std::size_t wrong(const Inside& inner, const Positions& positions,
                            const std::vector<std::int32_t>& vertices) {
-    return static_cast<std::size_t>(
-        std::count_if(vertices.begin(), vertices.end(),
-                      [&](std::int32_t v) { return inner(positions.row(v).transpose()); }));
+    return static_cast<std::size_t>(std::ranges::count_if(
+        vertices, [&](std::int32_t v) { return inner(positions.row(v).transpose()); }));
   }
 
   const Piece& outer_;
@@ -240,7 +239,7 @@ std::size_t putBackMeetings(std::vector<Piece>& pieces) {
 void putBackFar(Piece& piece, double maxMove) {
   for (std::size_t group = 0; group < piece.groups.count(); ++group) {
     const auto& members = piece.groups.members(group);
-    const bool tooFar = std::any_of(members.begin(), members.end(), [&](std::int32_t v) {
+    const bool tooFar = std::ranges::any_of(members, [&](std::int32_t v) {
       return (piece.now.positions.row(v) - piece.input->positions.row(v)).norm() > maxMove;
     });
     if (!tooFar) continue;
@@ -274,8 +273,8 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
                       surface.faces == surfaces[0].faces;
     if (!same) {
       throw InvalidInput(
-          "surfaces: their faces differ; several surfaces are repaired together if "
-          "their vertices correspond");
+          "surfaces: their faces differ; several surfaces are repaired together if their vertices "
+          "correspond");
     }
   }
   const auto topology = geometry::buildTopology(surfaces[0].faces, surfaces[0].vertexCount());

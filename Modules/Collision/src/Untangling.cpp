@@ -34,7 +34,7 @@ struct Group {
 std::vector<std::int32_t> withRings(const geometry::MeshTopology& topology,
                                     std::vector<std::int32_t> vertices, int rings) {
   for (int ring = 0; ring <= rings; ++ring) {
-    std::sort(vertices.begin(), vertices.end());
+    std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     if (ring == rings) break;
     for (std::size_t n = 0, count = vertices.size(); n < count; ++n) {
@@ -86,7 +86,7 @@ class Place {
       const auto around = topology.vertexFaces[v];
       moving.insert(moving.end(), around.begin(), around.end());
     }
-    std::sort(moving.begin(), moving.end());
+    std::ranges::sort(moving);
     moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
     double sum = 0;
     for (const std::int32_t f : moving) {
@@ -101,20 +101,19 @@ class Place {
       box.max().array() += cap_;
       tree.forOverlaps(box, [&](std::int32_t g) { reachable.push_back(g); });
     }
-    std::sort(reachable.begin(), reachable.end());
+    std::ranges::sort(reachable);
     reachable.erase(std::unique(reachable.begin(), reachable.end()), reachable.end());
     part_ = geometry::extractFaces(mesh, reachable);
 
     unknown_.assign(part_.vertexOrigin.size(), -1);
     for (std::size_t v = 0; v < unknown_.size(); ++v) {
-      if (!std::binary_search(group.free.begin(), group.free.end(), part_.vertexOrigin[v]))
-        continue;
+      if (!std::ranges::binary_search(group.free, part_.vertexOrigin[v])) continue;
       unknown_[v] = static_cast<std::int32_t>(free_.size());
       free_.push_back(static_cast<std::int32_t>(v));
     }
     marked_.resize(part_.faceOrigin.size());
     for (std::size_t f = 0; f < marked_.size(); ++f) {
-      marked_[f] = std::binary_search(moving.begin(), moving.end(), part_.faceOrigin[f]);
+      marked_[f] = std::ranges::binary_search(moving, part_.faceOrigin[f]);
     }
     topology_ = geometry::buildTopology(part_.mesh.faces, part_.mesh.vertexCount());
   }
@@ -133,9 +132,9 @@ class Place {
 
   /// True if all of the part's pairs are among the group's.
   [[nodiscard]] bool onlyOld(const std::vector<FacePair>& pairs) const {
-    return std::all_of(pairs.begin(), pairs.end(), [&](const FacePair& pair) {
+    return std::ranges::all_of(pairs, [&](const FacePair& pair) {
       const FacePair whole = {part_.faceOrigin[pair[0]], part_.faceOrigin[pair[1]]};
-      return std::binary_search(group_.pairs.begin(), group_.pairs.end(), whole);
+      return std::ranges::binary_search(group_.pairs, whole);
     });
   }
 
@@ -244,7 +243,7 @@ void smooth(const Place& place, Best& best) {
       if (unknown[w] < 0) centres.push_back(w);
     }
   }
-  std::sort(centres.begin(), centres.end());
+  std::ranges::sort(centres);
   centres.erase(std::unique(centres.begin(), centres.end()), centres.end());
   Triplets entries;
   Eigen::MatrixXd known = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(centres.size()), 3);
@@ -301,7 +300,7 @@ Positions drawnBack(const Place& place, const Attempt& found) {
 }
 
 bool isConcerned(const std::vector<geometry::FacePair>& pairs, const std::vector<bool>& concerned) {
-  return std::any_of(pairs.begin(), pairs.end(), [&](const geometry::FacePair& pair) {
+  return std::ranges::any_of(pairs, [&](const geometry::FacePair& pair) {
     return concerned.empty() || concerned[pair[0]] || concerned[pair[1]];
   });
 }

@@ -17,7 +17,7 @@ std::vector<fs::path> entriesOf(const fs::path& folder,
   for (const auto& entry : fs::directory_iterator(folder, absent)) {
     if (!wanted || wanted(entry.path().filename().string())) entries.push_back(entry.path());
   }
-  std::sort(entries.begin(), entries.end());
+  std::ranges::sort(entries);
   return entries;
 }
 

@@ -31,9 +31,8 @@ const Limit& decisive(const std::vector<Limit>& limits, double value) {
   const auto severity = [&](const Limit& limit) {
     return holds(limit, value) ? Judgement::Good : limit.outside;
   };
-  return *std::max_element(limits.begin(), limits.end(), [&](const Limit& a, const Limit& b) {
-    return severity(a) < severity(b);
-  });
+  return *std::ranges::max_element(
+      limits, [&](const Limit& a, const Limit& b) { return severity(a) < severity(b); });
 }
 
 std::string withUnit(const Shown& shown) {

@@ -77,7 +77,7 @@ Volume<float> squaredDistanceTo(const VoxelSet& set) {
 
 std::int32_t Components::largest() const {
   if (size.empty()) return -1;
-  return static_cast<std::int32_t>(std::max_element(size.begin(), size.end()) - size.begin());
+  return static_cast<std::int32_t>(std::ranges::max_element(size) - size.begin());
 }
 
 Components componentsOf(const VoxelSet& set) {

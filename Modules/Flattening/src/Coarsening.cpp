@@ -71,7 +71,7 @@ class Shrinking {
         order.emplace_back(starSize(static_cast<std::int32_t>(v)), static_cast<std::int32_t>(v));
       }
     }
-    std::sort(order.begin(), order.end());
+    std::ranges::sort(order);
     // Only the smaller stars go, so that the level stays even.
     order.resize((order.size() * 2 + 2) / 3);
     std::vector<bool> touched(present_.size(), false);
@@ -89,15 +89,15 @@ class Shrinking {
 
   [[nodiscard]] CoarseningLevel snapshot() const {
     CoarseningLevel level;
-    const auto faces = std::count(alive_.begin(), alive_.end(), true);
+    const auto faces = std::ranges::count(alive_, true);
     level.mesh.faces.resize(faces, 3);
     level.mesh.lengths.resize(faces, 3);
     level.mesh.vertexCount = static_cast<Eigen::Index>(present_.size());
     Eigen::Index next = 0;
     for (std::size_t f = 0; f < alive_.size(); ++f) {
       if (!alive_[f]) continue;
-      level.mesh.faces.row(next) = faces_.row(static_cast<Eigen::Index>(f));
-      level.mesh.lengths.row(next++) = lengths_.row(static_cast<Eigen::Index>(f));
+      level.mesh.faces.row(next) = faces_.row(f);
+      level.mesh.lengths.row(next++) = lengths_.row(f);
     }
     if (rimSize_ == 0) return level;
     std::int32_t first = 0;
@@ -480,7 +480,7 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
     double wanted = removal.spokes.front() / (removal.spokes.front() + removal.spokes.back());
     if (next_[before] != after) {  // the list runs along the rim: faces lie to its right
       std::swap(before, after);
-      std::reverse(ring.begin(), ring.end());
+      std::ranges::reverse(ring);
       centre = ring.size() - 1;
       wanted = 1 - wanted;
       for (StarFace& face : star) {

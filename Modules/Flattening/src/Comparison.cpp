@@ -29,7 +29,7 @@ class Lottery {
   [[nodiscard]] std::int32_t draw(std::mt19937_64& random) const {
     // 53 bits by hand: the standard's distributions differ between libraries.
     const double u = static_cast<double>(random() >> 11) * 0x1p-53 * sums_.back();
-    const auto at = std::upper_bound(sums_.begin(), sums_.end(), u);
+    const auto at = std::ranges::upper_bound(sums_, u);
     return static_cast<std::int32_t>(std::min<std::ptrdiff_t>(
         at - sums_.begin(), static_cast<std::ptrdiff_t>(sums_.size()) - 1));
   }
@@ -41,7 +41,7 @@ class Lottery {
 /// The s that makes the sum of |s r_i - 1| least: a weighted median of 1 / r_i with weights r_i.
 double bestScale(const std::vector<double>& ratios) {
   std::vector<double> sorted = ratios;
-  std::sort(sorted.begin(), sorted.end(), std::greater<>());
+  std::ranges::sort(sorted, std::greater<>());
   const double half = std::accumulate(sorted.begin(), sorted.end(), 0.0) / 2;
   double sum = 0;
   for (const double r : sorted) {
@@ -152,7 +152,7 @@ DistanceError distanceError(const std::vector<DistancePairs::Pair>& pairs,
 
 bool isFlatMap(const TriangleMesh& mesh, std::span<const std::int32_t> faces) {
   const double z = mesh.corner(faces.front(), 0).z();
-  return std::all_of(faces.begin(), faces.end(), [&](std::int32_t f) {
+  return std::ranges::all_of(faces, [&](std::int32_t f) {
     return mesh.corner(f, 0).z() == z && mesh.corner(f, 1).z() == z && mesh.corner(f, 2).z() == z;
   });
 }

@@ -46,7 +46,7 @@ double meanAreaError(const std::vector<RestFace>& rest, const IntrinsicMesh& mes
     const auto a = flat.row(mesh.faces(f, 0));
     const Eigen::RowVector2d u = flat.row(mesh.faces(f, 1)) - a;
     const Eigen::RowVector2d v = flat.row(mesh.faces(f, 2)) - a;
-    sum += std::abs((u[0] * v[1] - u[1] * v[0]) / (2 * rest[static_cast<std::size_t>(f)].area) - 1);
+    sum += std::abs((u[0] * v[1] - u[1] * v[0]) / (2 * rest[f].area) - 1);
   }
   return sum / static_cast<double>(mesh.faces.rows());
 }
@@ -90,20 +90,20 @@ std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& heig
     for (int k = 0; k < 3; ++k) {
       near[mesh.faces(f, k)].push_back(mesh.faces(f, (k + 1) % 3));
       near[mesh.faces(f, (k + 1) % 3)].push_back(mesh.faces(f, k));
-      areas[mesh.faces(f, k)] += rest[static_cast<std::size_t>(f)].area / 3;
+      areas[mesh.faces(f, k)] += rest[f].area / 3;
     }
   }
   std::vector<std::int32_t> order;
   for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
     if (height[v] > 0) order.push_back(v);
   }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
+  std::ranges::stable_sort(order,
+                           [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
   std::vector<Peak> peaks;
   std::vector<bool> taken(near.size(), false);
   for (const std::int32_t top : order) {
-    const bool peak = std::none_of(near[top].begin(), near[top].end(),
-                                   [&](std::int32_t w) { return height[w] > height[top]; });
+    const bool peak =
+        std::ranges::none_of(near[top], [&](std::int32_t w) { return height[w] > height[top]; });
     if (!peak || taken[top]) continue;
     Peak found{top, 0};
     std::vector<std::int32_t> stack = {top};
@@ -226,12 +226,11 @@ class CutSearch {
       for (const Peak& peak : peaks) {
         const std::int32_t place = trial_.coarse.vertexOrigin[peak.vertex];
         if (places.size() >= upTo) return;
-        if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+        if (std::ranges::find(places, place) == places.end()) places.push_back(place);
       }
     };
     take(kHighest);
-    std::stable_sort(peaks.begin(), peaks.end(),
-                     [](const Peak& a, const Peak& b) { return a.beneath > b.beneath; });
+    std::ranges::stable_sort(peaks, std::ranges::greater{}, &Peak::beneath);
     take(kFurther);
     return places;
   }

@@ -72,7 +72,7 @@ std::vector<std::int32_t> withoutPinches(const TriangleMesh& mesh) {
     auto fans = fansAt(topology, mesh.faces, v);
     if (fans.size() < 2) continue;
     // The fan on the larger part stays, then the larger fan, then the one of the first face.
-    std::stable_sort(fans.begin(), fans.end(), [&](const auto& a, const auto& b) {
+    std::ranges::stable_sort(fans, [&](const auto& a, const auto& b) {
       const std::size_t sa = sizes[part[a.front()]], sb = sizes[part[b.front()]];
       return sa != sb ? sa > sb : a.size() > b.size();
     });
@@ -112,19 +112,19 @@ void requireOriented(const TriangleMesh& mesh) {
 /// Leaves the piece that has more than half of the area.
 void keepLargest(Disc& disc) {
   const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
-  const auto pieces = static_cast<std::size_t>(*std::max_element(parts.begin(), parts.end())) + 1;
+  const auto pieces = static_cast<std::size_t>(*std::ranges::max_element(parts)) + 1;
   if (pieces == 1) return;
   const Eigen::VectorXd faceAreas = geometry::faceAreas(disc.mesh);
   std::vector<double> areas(pieces, 0.0);
   for (std::size_t f = 0; f < parts.size(); ++f) {
-    areas[parts[f]] += faceAreas[static_cast<Eigen::Index>(f)];
+    areas[parts[f]] += faceAreas[f];
   }
-  const auto largest = std::max_element(areas.begin(), areas.end()) - areas.begin();
+  const auto largest = std::ranges::max_element(areas) - areas.begin();
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
   if (!(areas[largest] > all / 2)) {
-    throw InvalidInput("surface: the part to be laid flat has " + std::to_string(pieces) +
-                       " pieces, none with more than half of the area; give one of them, by "
-                       "--label or --cuts");
+    throw InvalidInput(
+        "surface: the part to be laid flat has " + std::to_string(pieces) +
+        " pieces, none with more than half of the area; give one of them, by --label or --cuts");
   }
   std::vector<std::int32_t> kept;
   for (std::size_t f = 0; f < parts.size(); ++f) {
@@ -142,7 +142,7 @@ void keepLargest(Disc& disc) {
 
 void requireDiscWithHoles(const Disc& disc) {
   const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
-  if (*std::max_element(parts.begin(), parts.end()) > 0) {
+  if (*std::ranges::max_element(parts) > 0) {
     throw InvalidInput("surface: the cuts take it apart");
   }
   const auto topology = geometry::buildTopology(disc.mesh.faces, disc.mesh.vertexCount());
@@ -163,7 +163,7 @@ void findLoops(Disc& disc) {
         "surface: it is closed, so that no plane can hold it; cut it (--cuts), or give a part of "
         "it (--label)");
   }
-  std::stable_sort(loops.begin(), loops.end(), [&](const Loop& a, const Loop& b) {
+  std::ranges::stable_sort(loops, [&](const Loop& a, const Loop& b) {
     return lengthOf(a, disc.mesh.positions) > lengthOf(b, disc.mesh.positions);
   });
   disc.rim = std::move(loops.front());

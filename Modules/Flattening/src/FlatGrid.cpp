@@ -17,7 +17,6 @@ namespace explica::flattening {
 namespace {
 
 using Plane = Eigen::Vector2d;
-constexpr std::size_t kGridGrain = 4096;  // elements a task
 
 const Eigen::Vector3f kUnknown = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
 
@@ -173,7 +172,7 @@ Volume<Eigen::Vector3f> flatGrid(const FlatSheet& sheet, const FlatGridOptions& 
   Volume<Eigen::Vector3f> points(gridOver(sheet, options), kUnknown);
   const Grid& grid = points.grid;
   const auto places = placesOf(sheet, grid);
-  parallelFor(places.size(), kGridGrain, [&](std::size_t n) {
+  parallelFor(places.size(), [&](std::size_t n) {
     const MapPlace& place = places[n];
     if (place.face < 0) return;
     Point inner = Point::Zero(), outer = Point::Zero();
@@ -236,7 +235,7 @@ Volume<float> resampled(const Volume<float>& volume, const Volume<Eigen::Vector3
                         bool nearest) {
   Volume<float> values(points.grid, std::numeric_limits<float>::quiet_NaN());
   const Grid& grid = volume.grid;
-  parallelFor(points.size(), kGridGrain, [&](std::size_t n) {
+  parallelFor(points.size(), [&](std::size_t n) {
     if (!points[n].allFinite()) return;
     const Vector index = grid.toIndex(points[n].cast<double>());
     std::array<int, 3> low{};

@@ -64,7 +64,7 @@ std::vector<bool> flattestPlace(const TriangleMesh& mesh, double areaShare) {
   (void)level.maxCoeff(&first);
   std::priority_queue<std::pair<double, std::int32_t>> next;
   next.emplace(level[first], static_cast<std::int32_t>(first));
-  seen[static_cast<std::size_t>(first)] = true;
+  seen[first] = true;
   for (double wanted = areaShare * areas.sum(); wanted > 0 && !next.empty();) {
     const std::int32_t v = next.top().second;
     next.pop();

@@ -51,7 +51,7 @@ CutPath FoldWays::to(std::int32_t end, const std::vector<std::int32_t>& starts) 
   CutPath path;
   if (!std::isfinite(cost[end])) return path;
   for (std::int32_t v = end; v >= 0; v = from[v]) path.push_back(v);
-  std::reverse(path.begin(), path.end());
+  std::ranges::reverse(path);
   return path;
 }
 
@@ -84,7 +84,7 @@ std::vector<bool> besideHoles(const Disc& disc, Eigen::Index vertexCount) {
     for (const std::int32_t v : hole) barred[v] = true;
   }
   for (auto v = disc.mesh.vertexCount(); v < vertexCount; ++v) {
-    barred[static_cast<std::size_t>(v)] = true;
+    barred[v] = true;
   }
   return barred;
 }

@@ -202,8 +202,7 @@ class Descent {
       return stage.level >= 0 && stage.level < static_cast<int>(levels_.size()) &&
              stage.positions.rows() == static_cast<Eigen::Index>(vertices_[stage.level].size());
     };
-    if (!fits({from.level, from.positions}) ||
-        !std::all_of(from.path.begin(), from.path.end(), fits)) {
+    if (!fits({from.level, from.positions}) || !std::ranges::all_of(from.path, fits)) {
       throw InvalidInput("state: it belongs to another surface, or to other cuts");
     }
     state_ = from;
@@ -361,7 +360,7 @@ class Descent {
         break;
       }
       const double wanted = way.back() * k / (options_.frames - 1);
-      const auto next = std::upper_bound(way.begin(), way.end(), wanted);
+      const auto next = std::ranges::upper_bound(way, wanted);
       const auto n = static_cast<std::size_t>(next - way.begin()) - 1;
       const double step = next == way.end() ? 0 : *next - way[n];
       result.push_back(stateAt(n, step > 0 ? (wanted - way[n]) / step : 0));

@@ -194,7 +194,7 @@ double MapEnergy::largestStep(const FlatPositions& flat, const FlatPositions& st
     }
     least[begin / kGrain] = first;
   });
-  return std::min(1.0, kShareOfWay * *std::min_element(least.begin(), least.end()));
+  return std::min(1.0, kShareOfWay * *std::ranges::min_element(least));
 }
 
 }  // namespace explica::flattening

@@ -22,11 +22,11 @@ std::vector<bool> largestPart(const geometry::MeshTopology& topology, const Eige
   for (std::size_t f = 0; f < part.size(); ++f) {
     if (part[f] < 0) continue;
     if (part[f] >= static_cast<std::int32_t>(sizes.size())) sizes.resize(part[f] + 1, 0);
-    sizes[part[f]] += areas[static_cast<Eigen::Index>(f)];
+    sizes[part[f]] += areas[f];
   }
   std::vector<bool> largest(part.size(), false);
   if (sizes.empty()) return largest;
-  const auto best = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  const auto best = std::ranges::max_element(sizes) - sizes.begin();
   for (std::size_t f = 0; f < part.size(); ++f) largest[f] = part[f] == best;
   return largest;
 }
@@ -83,7 +83,7 @@ EdgeSet edgesOf(const geometry::MeshTopology& topology, std::span<const CutPath>
   for (const CutPath& path : cuts) {
     for (std::size_t n = 1; n < path.size(); ++n) {
       const auto near = topology.vertexVertices[path[n]];
-      if (!std::binary_search(near.begin(), near.end(), path[n - 1])) {
+      if (!std::ranges::binary_search(near, path[n - 1])) {
         throw InvalidInput("cuts: vertices " + std::to_string(path[n - 1]) + " and " +
                            std::to_string(path[n]) + " are no neighbours");
       }
@@ -126,7 +126,7 @@ std::vector<std::int32_t> openFaces(Faces& faces, Eigen::Index vertexCount,
   const EdgeSet cut = edgesOf(topology, cuts);
   std::vector<std::int32_t> touched, copyOf;
   for (const CutPath& path : cuts) touched.insert(touched.end(), path.begin(), path.end());
-  std::sort(touched.begin(), touched.end());
+  std::ranges::sort(touched);
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   const Faces before = faces;
   for (const std::int32_t v : touched) {

@@ -8,7 +8,6 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>

@@ -14,7 +14,7 @@ namespace {
 
 std::array<std::int32_t, 3> sortedCorners(const Faces& faces, Eigen::Index f) {
   std::array<std::int32_t, 3> corners = {faces(f, 0), faces(f, 1), faces(f, 2)};
-  std::sort(corners.begin(), corners.end());
+  std::ranges::sort(corners);
   return corners;
 }
 
@@ -24,10 +24,10 @@ std::vector<std::int32_t> facesAlsoIn(const Faces& faces, std::span<const std::i
                                       const Faces& others) {
   std::vector<std::array<std::int32_t, 3>> known;
   for (Eigen::Index f = 0; f < others.rows(); ++f) known.push_back(sortedCorners(others, f));
-  std::sort(known.begin(), known.end());
+  std::ranges::sort(known);
   std::vector<std::int32_t> kept;
   for (const std::int32_t f : listed) {
-    if (std::binary_search(known.begin(), known.end(), sortedCorners(faces, f))) kept.push_back(f);
+    if (std::ranges::binary_search(known, sortedCorners(faces, f))) kept.push_back(f);
   }
   return kept;
 }

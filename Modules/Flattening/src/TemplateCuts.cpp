@@ -6,8 +6,6 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "FoldWays.h"
 
-#include <cmath>
-
 namespace explica::flattening {
 namespace {
 

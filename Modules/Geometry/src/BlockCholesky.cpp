@@ -199,7 +199,7 @@ Eigen::SparseMatrix<double> graphOf(std::int32_t count,
   std::partial_sum(begin.begin(), begin.end(), begin.begin());
   Eigen::SparseMatrix<double> graph(count, count);
   graph.resizeNonZeros(begin.back());
-  std::copy(begin.begin(), begin.end(), graph.outerIndexPtr());
+  std::ranges::copy(begin, graph.outerIndexPtr());
   std::int32_t* const rows = graph.innerIndexPtr();
   std::fill_n(graph.valuePtr(), begin.back(), 1.0);
   std::vector<std::int32_t> at(begin.begin(), begin.end() - 1);

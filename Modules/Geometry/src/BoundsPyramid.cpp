@@ -51,7 +51,7 @@ std::vector<Placed> alongCurve(std::span<const MotionBounds> items) {
   for (int k = 0; k < 3; ++k) widest = std::max(widest, all.upper[k] - all.lower[k]);
   const float scale = widest > 0 ? static_cast<float>((1 << kCodeBits) - 1) / widest : 0;
   std::vector<Placed> placed(items.size());
-  parallelFor(items.size(), kGrain, [&](std::size_t n) {
+  parallelFor(items.size(), [&](std::size_t n) {
     std::uint32_t code = 0;
     for (int k = 0; k < 3; ++k) {
       const float middle = 0.5F * (items[n].lower[k] + items[n].upper[k]) - all.lower[k];

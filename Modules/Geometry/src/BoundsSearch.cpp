@@ -35,7 +35,7 @@ std::vector<BlockPair> blocksToShareOut(const BoundsSearch& search) {
   std::vector<BlockPair> pairs = {
       {search.first->levelCount() - 1, search.second->levelCount() - 1, 0, 0}};
   while (pairs.size() < kEnough &&
-         std::any_of(pairs.begin(), pairs.end(), [](const auto& p) { return !p.ofItems(); })) {
+         std::ranges::any_of(pairs, [](const auto& p) { return !p.ofItems(); })) {
     std::vector<BlockPair> opened;
     for (const BlockPair& pair : pairs) {
       if (pair.ofItems()) {

@@ -34,7 +34,7 @@ FaceSystem::FaceSystem(const Faces& faces, Eigen::Index vertexCount)
       edges.emplace_back(std::max(a, b), std::min(a, b));
     }
   }
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   orderVertices(edges);
   findBlocks();
@@ -52,7 +52,7 @@ void FaceSystem::orderVertices(VertexPairs& edges) {
     b = row;
   }
   for (std::int32_t n = 0; n < count; ++n) edges.emplace_back(n, n);
-  std::sort(edges.begin(), edges.end());
+  std::ranges::sort(edges);
   pattern_.begin.assign(static_cast<std::size_t>(count) + 1, 0);
   for (const auto& [column, row] : edges) {
     ++pattern_.begin[column + 1];
@@ -82,12 +82,12 @@ void FaceSystem::findBlocks() {
 
 void FaceSystem::assemble(const std::function<Term(Eigen::Index)>& term) {
   constexpr std::size_t kBlock = 8192;  // faces whose terms are held at a time
-  std::fill(blocks_.begin(), blocks_.end(), Eigen::Matrix2d::Zero());
+  std::ranges::fill(blocks_, Eigen::Matrix2d::Zero());
   gradient_.setZero(2 * static_cast<Eigen::Index>(used_.size()));
   std::vector<Term> terms(std::min<std::size_t>(kBlock, faceBlocks_.size()));
   for (std::size_t begin = 0; begin < faceBlocks_.size(); begin += kBlock) {
     const std::size_t count = std::min(kBlock, faceBlocks_.size() - begin);
-    parallelFor(count, 512,
+    parallelFor(count,
                 [&](std::size_t n) { terms[n] = term(static_cast<Eigen::Index>(begin + n)); });
     for (std::size_t n = 0; n < count; ++n) {
       const FaceBlocks& to = faceBlocks_[begin + n];

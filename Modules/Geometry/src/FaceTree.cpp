@@ -112,7 +112,7 @@ std::vector<std::array<std::int32_t, 2>> BoxTree::overlappingPairs() const {
   });
   std::vector<std::array<std::int32_t, 2>> pairs;
   for (const auto& block : found) pairs.insert(pairs.end(), block.begin(), block.end());
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 

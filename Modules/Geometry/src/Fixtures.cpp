@@ -5,7 +5,6 @@
 
 #include "Explica/Geometry/MeshTopology.h"
 
-#include <array>
 #include <cmath>
 
 namespace explica::geometry {

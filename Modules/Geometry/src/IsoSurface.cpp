@@ -33,7 +33,7 @@ class Marcher {
         for (int i = 0; i + 1 < size_[0]; ++i) visitCell(i, j, k);
       }
       std::swap(vertexOnEdge_[0], vertexOnEdge_[1]);
-      std::fill(vertexOnEdge_[1].begin(), vertexOnEdge_[1].end(), -1);
+      std::ranges::fill(vertexOnEdge_[1], -1);
     }
     TriangleMesh mesh;
     mesh.positions.resize(static_cast<Eigen::Index>(points_.size()), 3);

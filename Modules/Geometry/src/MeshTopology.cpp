@@ -50,7 +50,7 @@ std::vector<HalfEdge> sortedHalfEdges(const Faces& faces, Eigen::Index vertexCou
       sides[at[std::min(a, b)]++] = {std::min(a, b), std::max(a, b), f, k};
     }
   }
-  parallelFor(static_cast<std::size_t>(vertexCount), kTopologyGrain, [&](std::size_t v) {
+  parallelFor(static_cast<std::size_t>(vertexCount), [&](std::size_t v) {
     std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
   });
   return sides;
@@ -76,7 +76,7 @@ IndexLists groupByKey(std::size_t keys, const std::vector<std::array<std::int32_
   std::partial_sum(lists.begin.begin(), lists.begin.end(), lists.begin.begin());
   std::vector<std::int32_t> next(lists.begin.begin(), lists.begin.end() - 1);
   for (const auto& [key, value] : pairs) lists.values[next[key]++] = value;
-  parallelFor(keys, kTopologyGrain, [&](std::size_t key) {
+  parallelFor(keys, [&](std::size_t key) {
     std::sort(lists.values.begin() + lists.begin[key], lists.values.begin() + lists.begin[key + 1]);
   });
   return lists;
@@ -146,7 +146,7 @@ std::int64_t countRepeated(std::size_t count, const Hash& hash, const Before& be
   std::size_t bins = 1;
   while (kPerBin * bins < count) bins *= 2;
   std::vector<std::uint32_t> binOf(count);
-  parallelFor(count, kTopologyGrain, [&](std::size_t i) {
+  parallelFor(count, [&](std::size_t i) {
     std::uint64_t mixed = hash(i);
     mixed = (mixed ^ (mixed >> 29)) * 0xBF58476D1CE4E5B9U;
     binOf[i] = static_cast<std::uint32_t>((mixed ^ (mixed >> 32)) & (bins - 1));
@@ -195,9 +195,9 @@ std::int64_t countCoincident(const TriangleMesh& mesh, const std::vector<bool>& 
 
 std::int64_t countDuplicateFaces(const Faces& faces, const std::vector<std::int32_t>& sound) {
   std::vector<std::array<std::int32_t, 3>> keys(sound.size());
-  parallelFor(sound.size(), kTopologyGrain, [&](std::size_t i) {
+  parallelFor(sound.size(), [&](std::size_t i) {
     keys[i] = {faces(sound[i], 0), faces(sound[i], 1), faces(sound[i], 2)};
-    std::sort(keys[i].begin(), keys[i].end());
+    std::ranges::sort(keys[i]);
   });
   return countRepeated(
       keys.size(),
@@ -314,9 +314,9 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   });
   Faces soundFaces(static_cast<Eigen::Index>(sound.size()), 3);
   for (std::size_t i = 0; i < sound.size(); ++i) {
-    soundFaces.row(static_cast<Eigen::Index>(i)) = mesh.faces.row(sound[i]);
+    soundFaces.row(i) = mesh.faces.row(sound[i]);
   }
-  const std::int64_t usedCount = std::count(used.begin(), used.end(), true);
+  const std::int64_t usedCount = std::ranges::count(used, true);
   condition.unusedVertices = condition.vertices - usedCount;
   condition.duplicateFaces = countDuplicateFaces(mesh.faces, sound);
   condition.coincidentVertices = countCoincident(mesh, used);
@@ -428,8 +428,7 @@ SubMesh extractFaces(const TriangleMesh& mesh, std::span<const std::int32_t> fac
   }
   part.mesh.positions.resize(static_cast<Eigen::Index>(part.vertexOrigin.size()), 3);
   for (std::size_t v = 0; v < part.vertexOrigin.size(); ++v) {
-    part.mesh.positions.row(static_cast<Eigen::Index>(v)) =
-        mesh.positions.row(part.vertexOrigin[v]);
+    part.mesh.positions.row(v) = mesh.positions.row(part.vertexOrigin[v]);
   }
   part.mesh.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
   for (std::size_t f = 0; f < faces.size(); ++f) {

@@ -165,7 +165,7 @@ FaceTree::FaceTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   std::iota(items_.begin(), items_.end(), 0);
   orderInSpace(centres, items_.data(), count);
   corners_.resize(count);
-  parallelFor(count, 1024, [&](std::size_t n) {
+  parallelFor(count, [&](std::size_t n) {
     const std::int32_t face = items_[n];
     corners_[n] = {mesh_.corner(face, 0), mesh_.corner(face, 1), mesh_.corner(face, 2)};
   });

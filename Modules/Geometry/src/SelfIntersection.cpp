@@ -73,7 +73,7 @@ std::vector<MotionBounds> boundsOfFaces(const TriangleMesh& mesh,
                                         const std::vector<std::int32_t>& faces,
                                         const Point& origin) {
   std::vector<MotionBounds> bounds(faces.size());
-  parallelFor(faces.size(), 1024, [&](std::size_t n) {
+  parallelFor(faces.size(), [&](std::size_t n) {
     const auto corner = [&](int k) {
       return MotionBounds::ofPoint(mesh.corner(faces[n], k) - origin, Vector::Zero());
     };
@@ -110,7 +110,7 @@ std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh,
   std::vector<FacePair> pairs;
   intersect(mesh, {&own, &own, 0}, marked, marked, pairs);
   intersect(mesh, {&own, &rest, 0}, marked, others, pairs);
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 

@@ -12,7 +12,7 @@ namespace {
 Eigen::SparseMatrix<double> inOrder(const Eigen::SparseMatrix<double>& matrix,
                                     const std::vector<std::int32_t>& place) {
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, std::int32_t> order(matrix.rows());
-  std::copy(place.begin(), place.end(), order.indices().begin());
+  std::ranges::copy(place, order.indices().begin());
   Eigen::SparseMatrix<double> lower(matrix.rows(), matrix.cols());
   lower.selfadjointView<Eigen::Lower>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(order);
   const Eigen::SparseMatrix<double, Eigen::RowMajor> byRows = lower;  // which sorts

@@ -14,9 +14,8 @@
 namespace explica::geometry {
 namespace {
 
-constexpr double kUnitRounding = 1e-14;    // of unit vectors and of boxes about them
-constexpr int kLongestWalk = 64;           // faces crossed before the tree is asked
-constexpr std::size_t kFacesATask = 4096;  // some 0.1 ms of work
+constexpr double kUnitRounding = 1e-14;  // of unit vectors and of boxes about them
+constexpr int kLongestWalk = 64;         // faces crossed before the tree is asked
 
 /// Box of a spherical triangle of unit corners.  A point p of the flat triangle has |p|^2 >= 1 -
 /// l^2 / 3, l its longest edge, and its direction is 1 - |p| away.
@@ -31,7 +30,7 @@ Box boxOf(const Point& a, const Point& b, const Point& c) {
 
 std::vector<Box> boxesOf(const TriangleMesh& mesh) {
   std::vector<Box> boxes(static_cast<std::size_t>(mesh.faceCount()));
-  parallelFor(boxes.size(), kFacesATask, [&](std::size_t f) {
+  parallelFor(boxes.size(), [&](std::size_t f) {
     const auto face = static_cast<Eigen::Index>(f);
     boxes[f] = boxOf(mesh.corner(face, 0).normalized(), mesh.corner(face, 1).normalized(),
                      mesh.corner(face, 2).normalized());
@@ -59,7 +58,7 @@ int sphericalOrientation(const Point& a, const Point& b, const Point& c) {
 
 std::vector<std::int32_t> turnedOver(const TriangleMesh& mesh) {
   std::vector<char> turned(static_cast<std::size_t>(mesh.faceCount()));
-  parallelFor(turned.size(), kFacesATask, [&](std::size_t f) {
+  parallelFor(turned.size(), [&](std::size_t f) {
     const auto face = static_cast<Eigen::Index>(f);
     turned[f] =
         sphericalOrientation(mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2)) <= 0;

@@ -13,7 +13,6 @@
 
 #include <array>
 #include <cerrno>
-#include <system_error>
 
 namespace explica::io {
 namespace {
@@ -126,8 +125,7 @@ class ByteSource::OpenFile {
 
 std::filesystem::path besideFile(const std::filesystem::path& header, const std::string& name) {
   const std::filesystem::path below(name);
-  const bool leaves =
-      below.is_absolute() || std::find(below.begin(), below.end(), "..") != below.end();
+  const bool leaves = below.is_absolute() || std::ranges::find(below, "..") != below.end();
   if (leaves || name.empty()) {
     refuse(header, "names the file '" + name + "' for its data; one in its own folder is read");
   }

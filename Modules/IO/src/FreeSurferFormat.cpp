@@ -275,11 +275,10 @@ LabelMap readFreeSurferAnnot(const std::filesystem::path& path, ByteView bytes) 
   for (std::size_t v = 0; v < count; ++v) {
     const auto found = keyOf.find(colours[v]);
     outside = outside || found == keyOf.end();
-    labels.keys[static_cast<Eigen::Index>(v)] = found == keyOf.end() ? -1 : found->second;
+    labels.keys[v] = found == keyOf.end() ? -1 : found->second;
   }
   if (outside) labels.table.push_back({-1, "none", {0, 0, 0, 0}});
-  std::sort(labels.table.begin(), labels.table.end(),
-            [](const LabelEntry& a, const LabelEntry& b) { return a.key < b.key; });
+  std::ranges::sort(labels.table, {}, &LabelEntry::key);
   return labels;
 }
 

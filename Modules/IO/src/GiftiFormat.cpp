@@ -62,7 +62,7 @@ bool isSecond(const std::filesystem::path& path, const std::string& attribute,
               const std::string& word, std::initializer_list<const char*> first,
               std::initializer_list<const char*> second) {
   const auto among = [&](std::initializer_list<const char*> words) {
-    return std::any_of(words.begin(), words.end(), [&](const char* one) { return word == one; });
+    return std::ranges::any_of(words, [&](const char* one) { return word == one; });
   };
   if (among(second)) return true;
   if (!among(first)) {
@@ -194,8 +194,7 @@ std::vector<LabelEntry> tableOf(const std::filesystem::path& path, const XmlElem
     }
     table.push_back(entry);
   }
-  std::sort(table.begin(), table.end(),
-            [](const LabelEntry& a, const LabelEntry& b) { return a.key < b.key; });
+  std::ranges::sort(table, {}, &LabelEntry::key);
   return table;
 }
 
@@ -287,8 +286,8 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
   if (array.placed) {
     text +=
         "<CoordinateSystemTransformMatrix>\n<DataSpace>NIFTI_XFORM_SCANNER_ANAT</DataSpace>\n"
-        "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>"
-        "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
+        "<TransformedSpace>NIFTI_XFORM_SCANNER_ANAT</TransformedSpace>\n<MatrixData>1 0 0 0\n0 1 0 "
+        "0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
   }
   text += "<Data>";
   appendBase64(text, packZlib(array.bytes));
@@ -297,9 +296,9 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
 
 std::string opening(std::size_t arrays, const Metadata& metadata, const std::string& table) {
   std::string text =
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE GIFTI SYSTEM "
-      "\"http://www.nitrc.org/frs/download.php/115/gifti.dtd\">\n<GIFTI "
-      "Version=\"1.0\" NumberOfDataArrays=\"" +
+      R"(<?xml version="1.0" encoding="UTF-8"?>
+<!DOCTYPE GIFTI SYSTEM "http://www.nitrc.org/frs/download.php/115/gifti.dtd">
+<GIFTI Version="1.0" NumberOfDataArrays=")" +
       std::to_string(arrays) + "\">\n";
   appendMetadata(text, metadata);
   return text + table;
@@ -467,8 +466,7 @@ LabelMap readGiftiLabels(const std::filesystem::path& path, ByteView bytes) {
     const double value = array->values[v];
     if (!(std::abs(value) <= std::numeric_limits<Label>::max() && std::trunc(value) == value)) {
       refuse(path, "vertex " + std::to_string(v) +
-                       " has a value that is no whole number; labels "
-                       "are needed");
+                       " has a value that is no whole number; labels are needed");
     }
     labels.keys[v] = static_cast<Label>(value);
   }

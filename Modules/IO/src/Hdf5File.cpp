@@ -40,9 +40,10 @@ struct ElementType {
 };
 
 [[noreturn]] void failAsUnknown(const std::filesystem::path& path, const std::string& what) {
-  failToRead(path, "is HDF5 with " + what +
-                       ", which is not read here; write it anew with the program that made "
-                       "it, or h5repack");
+  failToRead(
+      path,
+      "is HDF5 with " + what +
+          ", which is not read here; write it anew with the program that made it, or h5repack");
 }
 
 std::vector<std::int64_t> dataspaceOf(const std::filesystem::path& path, ByteView message) {
@@ -93,7 +94,7 @@ ElementType elementOf(const std::filesystem::path& path, ByteView message) {
 /// Bytes of so many values; more than any file here holds are refused.
 std::uint64_t byteCountOf(const std::filesystem::path& path, const std::vector<std::int64_t>& size,
                           std::size_t width) {
-  if (std::find(size.begin(), size.end(), 0) != size.end()) return 0;
+  if (std::ranges::find(size, 0) != size.end()) return 0;
   return static_cast<std::uint64_t>(size.empty() ? 1 : checkedProduct(path, size)) * width;
 }
 
@@ -533,9 +534,8 @@ Bytes Hdf5File::unpacked(const Hdf5Array& array, const Chunk& chunk, std::size_t
 
 Bytes Hdf5File::chunkedValues(const Hdf5Array& array, std::uint64_t byteCount) const {
   const std::size_t rank = array.size.size(), width = widthOf(array.type);
-  const bool proper =
-      array.chunk.size() == rank && rank > 0 &&
-      std::all_of(array.chunk.begin(), array.chunk.end(), [](std::int64_t n) { return n > 0; });
+  const bool proper = array.chunk.size() == rank && rank > 0 &&
+                      std::ranges::all_of(array.chunk, [](std::int64_t n) { return n > 0; });
   if (!proper) failToRead(path_, "is damaged: its chunks have no size");
   const std::vector<Chunk> chunks = chunksOf(array);
   const std::uint64_t wanted = byteCountOf(path_, array.chunk, width);

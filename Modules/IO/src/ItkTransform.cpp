@@ -185,7 +185,7 @@ Transform::Pointer transformOf(const Path& path, TransformEntry entry) {
                          std::to_string(transform->GetNumberOfFixedParameters()) + " are needed");
   }
   Transform::FixedParametersType fixed(entry.fixed.size());
-  std::copy(entry.fixed.begin(), entry.fixed.end(), fixed.begin());
+  std::ranges::copy(entry.fixed, fixed.begin());
   Transform::ParametersType parameters;  // ITK takes a copy
   parameters.SetData(entry.parameters.data(), entry.parameters.size());
   transform->SetFixedParameters(fixed);

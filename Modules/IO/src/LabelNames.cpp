@@ -94,7 +94,7 @@ LabelNames readLabelNames(const fs::path& legend) {
     if (line.empty() || line.front() == '#') continue;
     const auto words = wordsOf(line);
     const auto heading = [&](const char* word) {
-      return static_cast<std::size_t>(std::find(words.begin(), words.end(), word) - words.begin());
+      return static_cast<std::size_t>(std::ranges::find(words, word) - words.begin());
     };
     if (names.empty() && heading("index") < words.size() && heading("name") < words.size()) {
       index = heading("index");

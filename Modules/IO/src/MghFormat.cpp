@@ -39,9 +39,8 @@ std::optional<StoredType> typeOf(int code) {
 bool isTag(std::int32_t number) {
   constexpr std::array<std::array<std::int32_t, 2>, 5> kRanges = {
       {{1, 7}, {10, 14}, {20, 24}, {30, 33}, {40, 45}}};
-  return std::any_of(kRanges.begin(), kRanges.end(), [number](const auto& range) {
-    return number >= range[0] && number <= range[1];
-  });
+  return std::ranges::any_of(
+      kRanges, [number](const auto& range) { return number >= range[0] && number <= range[1]; });
 }
 
 /// Tags of old, whose length is not written, or not in one way: what follows cannot be told apart.

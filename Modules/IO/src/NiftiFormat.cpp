@@ -64,10 +64,9 @@ Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detect
   const char* magic = reinterpret_cast<const char*>(bytes.data()) + (one ? 344 : 4);
   header.pair = std::memcmp(magic, one ? "ni1" : "ni2", 3) == 0;
   if (!header.pair && std::memcmp(magic, one ? "n+1" : "n+2", 3) != 0) {
-    failToRead(
-        path,
-        "is an Analyze header or a damaged NIfTI header (no NIfTI signature); Analyze files do "
-        "not say which side is left: convert to NIfTI");
+    failToRead(path,
+               "is an Analyze header or a damaged NIfTI header (no NIfTI signature); Analyze files "
+               "do not say which side is left: convert to NIfTI");
   }
   for (std::size_t i = 0; i < 8; ++i) {
     header.dim[i] = one ? at(40 + 2 * i, std::int16_t{}) : at(16 + 8 * i, std::int64_t{});
@@ -261,11 +260,10 @@ Eigen::Matrix4d place(const Header& header, const std::array<int, 3>& size, Plac
       break;
   }
   if (!hasQ && !hasS) {
-    refuse(
-        path,
-        "does not say where its voxels lie (qform and sform codes are 0), and programs differ on "
-        "what to assume; set its header, or use --xform none for voxel (0, 0, 0) at 0 and axes "
-        "along right, anterior, superior");
+    refuse(path,
+           "does not say where its voxels lie (qform and sform codes are 0), and programs differ "
+           "on what to assume; set its header, or use --xform none for voxel (0, 0, 0) at 0 and "
+           "axes along right, anterior, superior");
   }
   if (!hasS) {
     origin.placement = "qform";
@@ -396,8 +394,7 @@ StoredVolume readNifti(ByteSource& source, const std::filesystem::path&,
 
 Bytes niftiHeader(const VolumeToWrite& volume) {
   const Grid& grid = volume.grid;
-  const bool one = *std::max_element(grid.size.begin(), grid.size.end()) <=
-                   std::numeric_limits<std::int16_t>::max();
+  const bool one = *std::ranges::max_element(grid.size) <= std::numeric_limits<std::int16_t>::max();
   constexpr std::size_t kExtensionFlag = 4;  // four zeros: no extension follows
   Bytes bytes((one ? kHeader1 : kHeader2) + kExtensionFlag);
   const auto put = [&](std::size_t at, auto value) { store(bytes.data() + at, value, false); };

@@ -167,7 +167,7 @@ class BlankBlock {
  public:
   explicit BlankBlock(const Bytes& value) : bytes_(kBlock) {
     for (std::size_t at = 0; at < kBlock; at += value.size()) {
-      std::copy(value.begin(), value.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(at));
+      std::ranges::copy(value, bytes_.begin() + static_cast<std::ptrdiff_t>(at));
     }
     packed_ = packBlock(bytes_);
   }

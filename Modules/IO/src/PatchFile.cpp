@@ -82,8 +82,8 @@ Patch readPatch(const std::filesystem::path& path, std::optional<Eigen::Index> v
     }
   }
   std::vector<std::int32_t> sorted = patch.vertices;
-  std::sort(sorted.begin(), sorted.end());
-  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
+  const auto twice = std::ranges::adjacent_find(sorted);
   if (twice != sorted.end()) {
     refuse(path, "names vertex " + std::to_string(*twice) + " twice");
   }
@@ -142,7 +142,7 @@ Patch patchOf(const TriangleMesh& mesh, const std::vector<bool>& inPatch) {
   patch.positions.resize(static_cast<Eigen::Index>(patch.vertices.size()), 3);
   for (std::size_t i = 0; i < patch.vertices.size(); ++i) {
     patch.border.push_back(rim[patch.vertices[i]]);
-    patch.positions.row(static_cast<Eigen::Index>(i)) = mesh.positions.row(patch.vertices[i]);
+    patch.positions.row(i) = mesh.positions.row(patch.vertices[i]);
   }
   return patch;
 }

@@ -188,7 +188,7 @@ LoadedSurface readPly(const std::filesystem::path& path, ByteView bytes) {
           if (axisOf[p] >= 0) {
             builder.coordinates[3 * i + axisOf[p]] = value;
           } else if (vertices) {
-            maps[mapOf[p]].values[static_cast<Eigen::Index>(i)] = value;
+            maps[mapOf[p]].values[i] = value;
           }
           continue;
         }
@@ -378,7 +378,7 @@ template <class Real>
 void mergeCorners(const Corners<Real>& corners, MeshBuilder& builder) {
   std::vector<std::int32_t> order(corners.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&corners](std::int32_t a, std::int32_t b) {
+  std::ranges::sort(order, [&corners](std::int32_t a, std::int32_t b) {
     return corners[a] != corners[b] ? corners[a] < corners[b] : a < b;
   });
   std::vector<std::int32_t>& vertex = builder.triangles;  // at first the first corner of that place

@@ -46,7 +46,7 @@ PointTable readPointTable(const std::filesystem::path& path) {
   std::array<std::size_t, 3> column{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::string wanted(1, "xyz"[axis]);
-    column[axis] = std::find(names.begin(), names.end(), wanted) - names.begin();
+    column[axis] = std::ranges::find(names, wanted) - names.begin();
     if (column[axis] == names.size()) {
       refuse(path, "its first line names no column '" + wanted +
                        "'; x, y and z (RAS, mm), separated by tabs, are needed");

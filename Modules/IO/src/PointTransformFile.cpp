@@ -227,9 +227,8 @@ PointTransform lta(const std::filesystem::path& path, std::string_view text,
 }  // namespace
 
 Positions PointTransform::operator()(const Positions& points) const {
-  constexpr std::size_t kGrain = 4096;  // elements a task
   Positions moved(points.rows(), 3);
-  parallelFor(static_cast<std::size_t>(points.rows()), kGrain, [&](std::size_t p) {
+  parallelFor(static_cast<std::size_t>(points.rows()), [&](std::size_t p) {
     const auto row = static_cast<Eigen::Index>(p);
     moved.row(row) = map(points.row(row).transpose()).transpose();
   });

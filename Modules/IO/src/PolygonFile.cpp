@@ -68,7 +68,7 @@ std::vector<std::int64_t> loopOf(const std::filesystem::path& path, const PolyDa
         refuse(path,
                "names point " + std::to_string(vertex) + "; there are " + std::to_string(count));
       }
-      auto& pair = neighbours[static_cast<std::size_t>(vertex)];
+      auto& pair = neighbours[vertex];
       if (pair[1] >= 0) refuse(path, "its lines branch; one closed polygon is needed");
       pair[pair[0] >= 0 ? 1 : 0] = other;
     }
@@ -100,7 +100,7 @@ std::vector<std::int64_t> loopOf(const std::filesystem::path& path, const PolyDa
   std::int64_t at = first;
   do {
     loop.push_back(at);
-    const auto& pair = neighbours[static_cast<std::size_t>(at)];
+    const auto& pair = neighbours[at];
     const std::int64_t next = before < 0 || pair[0] != before ? pair[0] : pair[1];
     if (next < 0) refuse(path, "its line is open; one closed polygon is needed");
     before = at;

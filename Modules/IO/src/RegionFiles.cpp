@@ -81,7 +81,7 @@ void tellApart(std::vector<LabelMap>& all) {
 bool meansNoRegion(std::string_view name) {
   constexpr std::array<std::string_view, 8> kWords = {
       "unknown", "Unknown", "???", "outside", "none", "medialwall", "Medial_wall", "Medial_Wall"};
-  return name.empty() || std::find(kWords.begin(), kWords.end(), name) != kWords.end();
+  return name.empty() || std::ranges::find(kWords, name) != kWords.end();
 }
 
 std::vector<LabelMap> readRegions(const std::vector<std::filesystem::path>& files,
@@ -117,15 +117,15 @@ std::vector<bool> markedByNames(const std::filesystem::path& file,
   const LabelMap regions = readRegions({file}, vertexCount).front();
   std::vector<bool> marked(static_cast<std::size_t>(vertexCount));
   for (const std::string& name : names) {
-    const auto named = std::find_if(regions.table.begin(), regions.table.end(),
-                                    [&](const LabelEntry& entry) { return entry.name == name; });
+    const auto named = std::ranges::find_if(
+        regions.table, [&](const LabelEntry& entry) { return entry.name == name; });
     if (named == regions.table.end()) {
       throw InvalidInput(
           "'" + file.string() + "': has no region '" + name + "'; its regions are " +
           joined(regions.table, ", ", [](const LabelEntry& entry) { return entry.name; }));
     }
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
-      if (regions.keys[v] == named->key) marked[static_cast<std::size_t>(v)] = true;
+      if (regions.keys[v] == named->key) marked[v] = true;
     }
   }
   return marked;
@@ -141,12 +141,11 @@ std::vector<bool> markedByLabels(const std::vector<std::filesystem::path>& files
     highest = std::max(highest, labels.keys.maxCoeff());
     for (Eigen::Index v = 0; v < vertexCount; ++v) {
       const Label key = labels.keys[v];
-      const bool wanted =
-          keys.empty() ? key != 0 : std::find(keys.begin(), keys.end(), key) != keys.end();
-      if (wanted) marked[static_cast<std::size_t>(v)] = true;
+      const bool wanted = keys.empty() ? key != 0 : std::ranges::find(keys, key) != keys.end();
+      if (wanted) marked[v] = true;
     }
   }
-  if (std::find(marked.begin(), marked.end(), true) != marked.end()) return marked;
+  if (std::ranges::find(marked, true) != marked.end()) return marked;
   const std::string wanted = joined(keys, " or ", [](int key) { return std::to_string(key); });
   throw InvalidInput(wanted.empty()
                          ? "label: it is 0 everywhere, so the region is empty"

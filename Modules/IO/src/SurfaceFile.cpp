@@ -16,14 +16,14 @@ namespace explica::io {
 namespace {
 
 std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
 bool hasEnding(const SurfaceFormat& format, const std::string& name) {
-  return std::any_of(format.endings.begin(), format.endings.end(),
-                     [&name](const char* ending) { return name.ends_with(ending); });
+  return std::ranges::any_of(format.endings,
+                             [&name](const char* ending) { return name.ends_with(ending); });
 }
 
 /// The format of a file that is read, or nullptr.

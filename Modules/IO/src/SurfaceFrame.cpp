@@ -82,8 +82,8 @@ std::string frameMixUp(const Point& point, const Positions& positions,
   const Point& meant = wasTkr ? scanner : tkr;
   if (!(distance(meant) <= far)) return {};
   return printed(
-      "(%.2f, %.2f, %.2f) lies %.1f mm from the surface, but %.1f mm if it is %s: the surface "
-      "is in the other frame, in which the point is %.2f,%.2f,%.2f",
+      "(%.2f, %.2f, %.2f) lies %.1f mm from the surface, but %.1f mm if it is %s: the surface is "
+      "in the other frame, in which the point is %.2f,%.2f,%.2f",
       point[0], point[1], point[2], asGiven, distance(meant),
       wasTkr ? "FreeSurfer's surface RAS (tkregister)" : "scanner RAS", meant[0], meant[1],
       meant[2]);
@@ -122,10 +122,9 @@ void moveToScanner(LoadedSurface& surface, const FrameInFile& frame,
       return;
     case SurfaceSpace::Tkr:
       if (!volume) {
-        refuse(
-            origin.path,
-            "its coordinates are to be FreeSurfer's surface RAS, but it holds no volume geometry "
-            "to place them; name the volume with --fs-volume orig.mgz");
+        refuse(origin.path,
+               "its coordinates are to be FreeSurfer's surface RAS, but it holds no volume "
+               "geometry to place them; name the volume with --fs-volume orig.mgz");
       }
       tkr = true;
       break;

@@ -6,7 +6,6 @@
 
 #include "Explica/Core/Errors.h"
 
-#include <algorithm>
 #include <array>
 
 namespace explica::io {

@@ -63,7 +63,7 @@ void addMaps(std::vector<VertexMap>& maps, const std::string& name,
     map.name = components > 1 ? name + "[" + std::to_string(c) + "]" : name;
     map.values.resize(static_cast<Eigen::Index>(rows));
     for (std::size_t row = 0; row < rows; ++row) {
-      map.values[static_cast<Eigen::Index>(row)] = values[row * components + c];
+      map.values[row] = values[row * components + c];
     }
     maps.push_back(std::move(map));
   }

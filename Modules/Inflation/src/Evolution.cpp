@@ -20,11 +20,10 @@ constexpr std::array<std::string_view, 3> kWithout = {"collar_stretch_mean", "co
                                                       "seconds_repulsion"};
 
 bool hasMeaning(const std::string& column) {
-  if (std::find(kWithout.begin(), kWithout.end(), column) != kWithout.end()) return false;
-  return std::none_of(unfolding::kTerms.begin(), unfolding::kTerms.end(),
-                      [&](const unfolding::TermInfo& info) {
-                        return !info.closed && column == "energy_" + std::string(info.name);
-                      });
+  if (std::ranges::find(kWithout, column) != kWithout.end()) return false;
+  return std::ranges::none_of(unfolding::kTerms, [&](const unfolding::TermInfo& info) {
+    return !info.closed && column == "energy_" + std::string(info.name);
+  });
 }
 
 std::vector<unfolding::EvolutionColumn> columns() {

@@ -29,7 +29,7 @@ constexpr std::size_t kSettledLooks = 4;  // over which that is measured
 void requireUsable(const TriangleMesh& mesh, const InflateOptions& options) {
   geometry::requireClosedManifold(mesh, "surface");
   const auto components = geometry::faceComponents(mesh.faces, mesh.vertexCount());
-  const auto last = std::max_element(components.begin(), components.end());
+  const auto last = std::ranges::max_element(components);
   if (last != components.end() && *last > 0) {
     throw InvalidInput("surface: it has " + std::to_string(*last + 1) +
                        " pieces that do not hang together; inflate each by itself");
@@ -224,8 +224,8 @@ void judge(const InflateOptions& options, const Monitor& monitor, InflateResult&
              last.visibility < options.targetSeen - kHeldBelow) {
     result.flag = unfolding::Flag::Held;
     monitor.warn(
-        printed("the surface is held at a visibility of %.3f: areas and lengths kept, it does "
-                "not open further",
+        printed("the surface is held at a visibility of %.3f: areas and lengths kept, it does not "
+                "open further",
                 last.visibility));
   } else {
     return;

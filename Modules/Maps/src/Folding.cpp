@@ -37,7 +37,7 @@ void fillBoundary(const TriangleMesh& mesh, Eigen::VectorXd& values) {
     for (const std::int32_t w : topology.vertexVertices[v]) {
       if (!rim[w]) sum += values[w], ++count;
     }
-    values[static_cast<Eigen::Index>(v)] = count > 0 ? sum / count : 0;
+    values[v] = count > 0 ? sum / count : 0;
   }
 }
 

@@ -54,7 +54,7 @@ HeatFlow::HeatFlow(HeatFlow&&) noexcept = default;
 void HeatFlow::advance(Eigen::Ref<Eigen::MatrixXd> values) const {
   const State& s = *state_;
   parallelFor(static_cast<std::size_t>(values.cols()), 1, [&](std::size_t column) {
-    auto u = values.col(static_cast<Eigen::Index>(column));
+    auto u = values.col(column);
     const Eigen::VectorXd first = s.solver.solve(s.weights.cwiseProduct(u));
     // h L first = M (u - first) / gamma, so that the second stage needs no product with L.
     const Eigen::VectorXd start = u + (1 - kGamma) / kGamma * (first - u);

@@ -83,7 +83,7 @@ struct Prism {
     const double volume = (corner[1] - corner[0]).cross(corner[2] - corner[0]).dot(up) / 2;
     Eigen::Index nearest = 0;
     weights.maxCoeff(&nearest);
-    shares.add(place, labels[static_cast<std::size_t>(nearest)], volume / parts);
+    shares.add(place, labels[nearest], volume / parts);
   }
 };
 

@@ -39,7 +39,7 @@ Parcellation parcellate(const TriangleMesh& sphere, const Eigen::VectorXd& foldi
                         const std::vector<LabelledSphere>& atlases) {
   if (atlases.empty()) throw InvalidInput("no labelled surface is given");
   const bool weigh = atlases.size() > 1 && folding.size() == sphere.vertexCount() &&
-                     std::all_of(atlases.begin(), atlases.end(), [](const LabelledSphere& atlas) {
+                     std::ranges::all_of(atlases, [](const LabelledSphere& atlas) {
                        return atlas.folding.size() == atlas.sphere.vertexCount();
                      });
   std::vector<std::map<Label, double>> votes(static_cast<std::size_t>(sphere.vertexCount()));
@@ -56,14 +56,14 @@ Parcellation parcellate(const TriangleMesh& sphere, const Eigen::VectorXd& foldi
     if (weigh) say = agreement(sphere, folding, resampleMaps(weights, atlas.folding));
     for (Eigen::Index v = 0; v < weights.rows(); ++v) {
       for (ResamplingWeights::InnerIterator it(weights, v); it; ++it) {
-        votes[static_cast<std::size_t>(v)][atlas.keys[it.index()]] += say[v] * it.value();
+        votes[v][atlas.keys[it.index()]] += say[v] * it.value();
       }
     }
   }
   Parcellation result{VertexKeys(sphere.vertexCount()), Eigen::VectorXd(sphere.vertexCount())};
   for (Eigen::Index v = 0; v < sphere.vertexCount(); ++v) {
     double all = 0, most = -1;
-    for (const auto& [key, share] : votes[static_cast<std::size_t>(v)]) {
+    for (const auto& [key, share] : votes[v]) {
       all += share;
       if (share > most) result.keys[v] = key, most = share;
     }

@@ -15,8 +15,7 @@
 namespace explica::maps {
 namespace {
 
-constexpr double kEnough = 0.5;       // of the weight must be known
-constexpr std::size_t kGrain = 1024;  // rows a task
+constexpr double kEnough = 0.5;  // of the weight must be known
 
 TriangleMesh onUnitSphere(const TriangleMesh& sphere, std::string_view name) {
   requireSphere(sphere, name);
@@ -119,7 +118,7 @@ ResamplingWeights resamplingWeights(const TriangleMesh& from, const TriangleMesh
 
 Eigen::MatrixXd resampleMaps(const ResamplingWeights& weights, const Eigen::MatrixXd& values) {
   Eigen::MatrixXd result(weights.rows(), values.cols());
-  parallelFor(static_cast<std::size_t>(weights.rows()), kGrain, [&](std::size_t row) {
+  parallelFor(static_cast<std::size_t>(weights.rows()), [&](std::size_t row) {
     const auto i = static_cast<Eigen::Index>(row);
     for (Eigen::Index map = 0; map < values.cols(); ++map) {
       double sum = 0, known = 0;
@@ -147,13 +146,12 @@ Eigen::VectorXd resampleAmounts(const ResamplingWeights& weights, const Eigen::V
 
 VertexKeys resampleLabels(const ResamplingWeights& weights, const VertexKeys& keys) {
   VertexKeys result(weights.rows());
-  parallelFor(static_cast<std::size_t>(weights.rows()), kGrain, [&](std::size_t row) {
+  parallelFor(static_cast<std::size_t>(weights.rows()), [&](std::size_t row) {
     const auto i = static_cast<Eigen::Index>(row);
     std::map<Label, double> votes;
     for (Row it(weights, i); it; ++it) votes[keys[it.index()]] += it.value();
-    const auto most =
-        std::max_element(votes.begin(), votes.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most = std::ranges::max_element(
+        votes, [](const auto& a, const auto& b) { return a.second < b.second; });
     result[i] = most->first;
   });
   return result;

@@ -20,7 +20,7 @@ constexpr int kSteps = 8;  // amplitude error of every wave below 1e-3, width be
 std::vector<bool> knownWithin(const Eigen::MatrixXd& values, const std::vector<bool>& mask) {
   std::vector<bool> known(static_cast<std::size_t>(values.rows()));
   for (std::size_t v = 0; v < known.size(); ++v) {
-    known[v] = (mask.empty() || mask[v]) && values.row(static_cast<Eigen::Index>(v)).allFinite();
+    known[v] = (mask.empty() || mask[v]) && values.row(v).allFinite();
   }
   return known;
 }
@@ -76,7 +76,7 @@ Eigen::MatrixXd smoothMaps(const TriangleMesh& mesh, Eigen::MatrixXd values, dou
     } while (last < values.cols() && knownWithin(values.col(last), mask) == known);
     Eigen::MatrixXd block = values.middleCols(first, last - first);
     for (std::size_t v = 0; v < known.size(); ++v) {
-      if (!known[v]) block.row(static_cast<Eigen::Index>(v)).setZero();
+      if (!known[v]) block.row(v).setZero();
     }
     const HeatFlow flow(mesh, time / kSteps, known);
     for (int step = 0; step < kSteps; ++step) {

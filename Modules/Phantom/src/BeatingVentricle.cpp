@@ -73,9 +73,9 @@ void check(const harmonic::PhantomOptions& size, const BeatOptions& o) {
   }
   const double reach = kFocal * kOuterSinh + kRightReach;
   if (size.size > 1024 || !(size.size * size.spacing > 2 * (reach + size.spacing))) {
-    throw InvalidInput("this phantom reaches " + std::to_string(reach) +
-                       " mm from the centre; size times spacing must exceed twice that, with at "
-                       "most 1024 voxels");
+    throw InvalidInput(
+        "this phantom reaches " + std::to_string(reach) +
+        " mm from the centre; size times spacing must exceed twice that, with at most 1024 voxels");
   }
 }
 

@@ -35,7 +35,7 @@ std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
   const std::string table = fileText(path);
   const std::vector<std::string> headings = cellsOf(table.substr(0, table.find('\n')));
   for (const char* heading : {"name", kThickness, kArea}) {
-    if (std::find(headings.begin(), headings.end(), heading) == headings.end()) {
+    if (std::ranges::find(headings, heading) == headings.end()) {
       throw IOError(path.string() + ": has no column " + heading);
     }
   }
@@ -57,8 +57,8 @@ std::string asymmetryTable(const std::filesystem::path& left, const std::filesys
   const auto ofLeft = readRegions(left);
   const auto ofRight = readRegions(right);
   std::string table =
-      "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\t"
-      "area_left_mm2\tarea_right_mm2\tarea_asymmetry\n";
+      "name\tthickness_left_mm\tthickness_right_mm\tthickness_asymmetry\tarea_left_mm2\tarea_right_"
+      "mm2\tarea_asymmetry\n";
   for (const auto& [name, region] : ofLeft) {
     const auto other = ofRight.find(name);
     if (other == ofRight.end()) continue;

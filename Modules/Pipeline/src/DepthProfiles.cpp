@@ -57,7 +57,7 @@ std::vector<std::string> namesIn(const Table& table, std::string_view column) {
   const auto* texts = table.text(column);
   if (!texts) return names;
   for (const std::string& name : *texts) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
   return names;
 }
@@ -73,8 +73,8 @@ double AtDepth::spread() const {
 }
 
 const DepthProfile* VolumeProfiles::all() const {
-  const auto found = std::find_if(regions.begin(), regions.end(),
-                                  [](const DepthProfile& p) { return p.region == kAll; });
+  const auto found =
+      std::ranges::find_if(regions, [](const DepthProfile& p) { return p.region == kAll; });
   return found == regions.end() ? nullptr : &*found;
 }
 
@@ -83,9 +83,8 @@ std::vector<const DepthProfile*> VolumeProfiles::largest(std::size_t most) const
   for (const DepthProfile& profile : regions) {
     if (profile.region != kAll && profile.count > 0) chosen.push_back(&profile);
   }
-  std::stable_sort(chosen.begin(), chosen.end(), [](const DepthProfile* a, const DepthProfile* b) {
-    return a->count > b->count;
-  });
+  std::ranges::stable_sort(
+      chosen, [](const DepthProfile* a, const DepthProfile* b) { return a->count > b->count; });
   if (chosen.size() > most) chosen.resize(most);
   return chosen;
 }

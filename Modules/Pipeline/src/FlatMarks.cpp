@@ -27,10 +27,9 @@ void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::
   const auto places = flattening::regionPlaces(flat, regions.keys);
   std::vector<std::pair<std::ptrdiff_t, const io::LabelEntry*>> bySize;
   for (const io::LabelEntry& entry : regions.table) {
-    bySize.emplace_back(-std::count(regions.keys.begin(), regions.keys.end(), entry.key), &entry);
+    bySize.emplace_back(-std::ranges::count(regions.keys, entry.key), &entry);
   }
-  std::stable_sort(bySize.begin(), bySize.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(bySize, [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [size, entry] : bySize) {
     if (places.contains(entry->key)) marks.names.emplace_back(places.at(entry->key), entry->name);
   }

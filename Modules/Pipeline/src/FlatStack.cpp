@@ -67,8 +67,8 @@ report::Picture depthPicture(const Volume<float>& stack, int k, int zoom,
 
 report::ColourScale greyScaleOf(const Volume<float>& stack, const std::string& name) {
   std::vector<double> known;
-  std::copy_if(stack.data.begin(), stack.data.end(), std::back_inserter(known),
-               [](float v) { return std::isfinite(v); });
+  std::ranges::copy_if(stack.data, std::back_inserter(known),
+                       [](float v) { return std::isfinite(v); });
   return report::scaleFor(
       Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())),
       name, "", report::ColourMap::Grey);

@@ -84,8 +84,7 @@ NamedLabels nameLabels(const fs::path& file, std::optional<int> dimension = std:
   const auto has = [&](Label label) { return found.count(label) != 0; };
   const auto hasCortex = [&](bool left) {
     return has(left ? kLeftCortex : kRightCortex) ||
-           std::any_of(found.begin(), found.end(),
-                       [&](Label label) { return isParcel(label, left); });
+           std::ranges::any_of(found, [&](Label label) { return isParcel(label, left); });
   };
   if (has(2) && has(41) && hasCortex(true) && hasCortex(false)) {
     named.naming = *found.rbegin() > 42 || has(10) ? Naming::FreeSurfer : Naming::Ribbon;
@@ -113,8 +112,7 @@ std::vector<int> cortexOf(const NamedLabels& labels, bool left) {
 }
 
 bool wanted(const PlanOptions& options, RunStep step) {
-  return options.steps.empty() ||
-         std::find(options.steps.begin(), options.steps.end(), step) != options.steps.end();
+  return options.steps.empty() || std::ranges::find(options.steps, step) != options.steps.end();
 }
 
 std::shared_ptr<Json> values(Json json) {
@@ -151,7 +149,7 @@ Json thicknessValues(const fs::path& file, const NamedLabels& labels, bool left)
       return json;
   }
   const auto absent = [&](int label) {  // a volume yet to be made will hold all
-    return !labels.found.empty() && labels.found.count(label) == 0;
+    return !labels.found.empty() && !labels.found.contains(label);
   };
   inside.erase(std::remove_if(inside.begin(), inside.end(), absent), inside.end());
   insulated.erase(std::remove_if(insulated.begin(), insulated.end(), absent), insulated.end());
@@ -170,7 +168,7 @@ Json surfaceValues(const fs::path& file, const NamedLabels& labels, bool left) {
       json["grey-label"] = {1};
       break;
     case Naming::FreeSurfer:
-      if (labels.found.count(left ? kLeftCortex : kRightCortex) == 0 ||
+      if (!labels.found.contains(left ? kLeftCortex : kRightCortex) ||
           cortexOf(labels, left).size() > 1) {
         json["preset"] = "aseg";
         json["grey-label"] = cortexOf(labels, left);
@@ -416,7 +414,7 @@ InputKind detectKind(const fs::path& input) {
   }
   if (distinct.size() <= kMostLabels) return InputKind::Labels;
   // aparc+aseg has more labels than others, but fewer than an image has grey values.
-  const auto parcels = std::count_if(distinct.begin(), distinct.end(), [](float value) {
+  const auto parcels = std::ranges::count_if(distinct, [](float value) {
     const auto label = static_cast<Label>(value);
     return isParcel(label, true) || isParcel(label, false);
   });
@@ -441,13 +439,13 @@ bool hasBothSides(const study::SubjectFiles& files) {
 /// Adds what the plan for the other hemisphere has and this one lacks.
 void join(Plan& plan, Plan other) {
   for (SourceFile& source : other.sources) {
-    const bool known = std::any_of(
-        plan.sources.begin(), plan.sources.end(),
-        [&](const SourceFile& s) { return s.role == source.role && s.path == source.path; });
+    const bool known = std::ranges::any_of(plan.sources, [&](const SourceFile& s) {
+      return s.role == source.role && s.path == source.path;
+    });
     if (!known) plan.sources.push_back(std::move(source));
   }
   for (std::string& remark : other.remarks) {
-    if (std::find(plan.remarks.begin(), plan.remarks.end(), remark) == plan.remarks.end())
+    if (std::ranges::find(plan.remarks, remark) == plan.remarks.end())
       plan.remarks.push_back(std::move(remark));
   }
   for (PlannedStep& step : other.steps) {

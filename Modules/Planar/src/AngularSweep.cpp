@@ -92,8 +92,7 @@ Seen seenOf(const Curve& curve, const Point2& viewpoint) {
     events.push_back({spans[s].begin, s, true});
     events.push_back({spans[s].end, s, false});
   }
-  std::stable_sort(events.begin(), events.end(),
-                   [](const Event& x, const Event& y) { return x.angle < y.angle; });
+  std::ranges::stable_sort(events, {}, &Event::angle);
 
   Seen seen{Eigen::VectorXd::Zero(curve.edgeCount()), Eigen::VectorXd::Zero(curve.edgeCount())};
   std::vector<int> active;
@@ -102,7 +101,7 @@ Seen seenOf(const Curve& curve, const Point2& viewpoint) {
     if (event.enters) {
       active.push_back(event.span);
     } else {
-      active.erase(std::find(active.begin(), active.end(), event.span));
+      active.erase(std::ranges::find(active, event.span));
     }
     if (k + 1 == events.size() || active.empty()) continue;
     const double begin = event.angle;

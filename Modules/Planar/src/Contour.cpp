@@ -100,7 +100,7 @@ std::vector<Curve> contoursOfSlice(const Volume<float>& field, int k, double lev
     Curve curve;
     curve.positions.resize(static_cast<Eigen::Index>(points.size()), 2);
     for (std::size_t p = 0; p < points.size(); ++p) {
-      curve.positions.row(static_cast<Eigen::Index>(p)) = points[p].transpose();
+      curve.positions.row(p) = points[p].transpose();
     }
     curves.push_back(std::move(curve));
   }
@@ -110,7 +110,7 @@ std::vector<Curve> contoursOfSlice(const Volume<float>& field, int k, double lev
   for (Curve& curve : curves) {
     if (mirrored) curve.positions = curve.positions.colwise().reverse().eval();
   }
-  std::stable_sort(curves.begin(), curves.end(), [](const Curve& a, const Curve& b) {
+  std::ranges::stable_sort(curves, [](const Curve& a, const Curve& b) {
     return std::abs(signedArea(a.positions)) > std::abs(signedArea(b.positions));
   });
   return curves;

@@ -163,8 +163,7 @@ std::vector<std::array<int, 2>> intersectingEdges(const Curve& curve) {
     const Point2 a = curve.point(e), b = curve.point(curve.next(e));
     boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), e});
   }
-  std::stable_sort(boxes.begin(), boxes.end(),
-                   [](const Box& a, const Box& b) { return a.low.x() < b.low.x(); });
+  std::ranges::stable_sort(boxes, [](const Box& a, const Box& b) { return a.low.x() < b.low.x(); });
   std::vector<std::array<int, 2>> pairs;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const Box& one = boxes[k];
@@ -180,7 +179,7 @@ std::vector<std::array<int, 2>> intersectingEdges(const Curve& curve) {
       }
     }
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::ranges::sort(pairs);
   return pairs;
 }
 

@@ -69,7 +69,7 @@ class VertexCells {
       found.insert(found.end(), vertices_.begin() + begin_[first + firstColumn],
                    vertices_.begin() + begin_[first + lastColumn + 1]);
     }
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
   }
 
  private:

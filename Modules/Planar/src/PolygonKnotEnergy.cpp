@@ -319,7 +319,7 @@ std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(PolygonKnot method, con
   switch (method) {
     case PolygonKnot::Auto: {
       constexpr double kMostPairs = 4e6;  // a third of a second on one processor
-      const auto movers = static_cast<double>(std::count(moving.begin(), moving.end(), true));
+      const auto movers = static_cast<double>(std::ranges::count(moving, true));
       const bool few = movers * curve.edgeCount() <= kMostPairs;
       return std::make_unique<ClusterSum>(curve, moving, few ? 0 : openingRatio);
     }

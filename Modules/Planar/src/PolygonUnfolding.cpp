@@ -59,7 +59,7 @@ void isolate(Curve& curve, Region& region) {
   chain.closed = curve.closed && region.edgeCount == curve.edgeCount();
   chain.positions.resize(static_cast<Eigen::Index>(vertices.size()), 2);
   for (std::size_t k = 0; k < vertices.size(); ++k) {
-    chain.positions.row(static_cast<Eigen::Index>(k)) = curve.positions.row(vertices[k]);
+    chain.positions.row(k) = curve.positions.row(vertices[k]);
   }
   curve = std::move(chain);
   region.firstEdge = 0;

@@ -121,7 +121,7 @@ std::vector<LocatedRecord> recordsBelow(const fs::path& folder) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().filename() == kRecordName) paths.push_back(entry.path());
   }
-  std::sort(paths.begin(), paths.end());
+  std::ranges::sort(paths);
   std::vector<LocatedRecord> records;
   for (const fs::path& path : paths) {
     try {

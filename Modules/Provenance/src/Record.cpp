@@ -30,7 +30,7 @@ std::string nameOfPath(const std::string& word) {
   const auto slash = word.find_last_of('/');
   if (slash == std::string::npos) return word;
   const std::string name = word.substr(slash + 1);
-  const bool rooted = word[0] == '/' || word[0] == '~' || word.rfind("../", 0) == 0;
+  const bool rooted = word[0] == '/' || word[0] == '~' || word.starts_with("../");
   return rooted || name.find('.') != std::string::npos ? name : word;
 }
 
@@ -69,12 +69,12 @@ std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, cons
   const std::string beginning = name.substr(0, end);
   std::vector<std::filesystem::path> candidates;
   for (const auto& run : std::filesystem::directory_iterator(runs, fault)) {
-    if (run.path().filename().string().rfind(beginning, 0) != 0) continue;
+    if (!run.path().filename().string().starts_with(beginning)) continue;
     for (const auto& step : std::filesystem::directory_iterator(run.path(), fault)) {
       candidates.push_back(step.path() / kRecordName);
     }
   }
-  std::sort(candidates.begin(), candidates.end());
+  std::ranges::sort(candidates);
   for (const auto& candidate : candidates) {
     if (auto found = listedIn(candidate, std::nullopt, digest)) return found;
   }
@@ -243,9 +243,9 @@ Json readRecord(const std::filesystem::path& path) {
 bool staysBelow(const std::filesystem::path& name) {
   const std::string text = name.string();
   const bool controls =
-      std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+      std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (text.empty() || name.is_absolute() || controls) return false;
-  return std::none_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
+  return std::ranges::none_of(name, [](const auto& part) { return part == ".."; });
 }
 
 std::optional<std::filesystem::path> ownFile(const std::filesystem::path& folder,

@@ -58,7 +58,7 @@ Json describeMachine(bool withNames) {
   }
   std::ifstream cpuInfo("/proc/cpuinfo");
   for (std::string line; std::getline(cpuInfo, line);) {
-    if (line.rfind("model name", 0) == 0) {
+    if (line.starts_with("model name")) {
       machine["cpu"] = line.substr(line.find(':') + 2);
       break;
     }

@@ -131,7 +131,7 @@ void historyInto(const fs::path& recordPath, int depth, std::ostringstream& text
 }  // namespace
 
 bool Verification::allSame() const {
-  return std::all_of(files.begin(), files.end(), [](const VerifiedFile& file) {
+  return std::ranges::all_of(files, [](const VerifiedFile& file) {
     return file.state == FileState::Same || file.state == FileState::Unhashed;
   });
 }

@@ -58,7 +58,7 @@ struct Binning {
 };
 
 Binning binningOf(std::vector<float> values) {
-  const float low = *std::min_element(values.begin(), values.end());
+  const float low = *std::ranges::min_element(values);
   const float high = quantileOf(std::move(values), 0.995);
   return {low, high > low ? (kBins - 1) / (high - low) : 0.0f};
 }
@@ -340,8 +340,7 @@ AffineRegistration registerAffine(const Volume<float>& image, const Volume<float
       }
     }
   }
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const Found& a, const Found& b) { return a.value > b.value; });
+  std::ranges::stable_sort(starts, std::ranges::greater{}, &Found::value);
   constexpr std::size_t kTried = 6;
   starts.resize(std::min(starts.size(), kTried));
   Parameters scale = Parameters::Ones();
@@ -354,8 +353,7 @@ AffineRegistration registerAffine(const Volume<float>& image, const Volume<float
     start = climb(level, from, Point::Zero(), start, scaled(rigidAndScale(1)), 4, 1e-4);
   }
   monitor.progress(0.4, "affine registration");
-  Found best = *std::max_element(starts.begin(), starts.end(),
-                                 [](const Found& a, const Found& b) { return a.value < b.value; });
+  Found best = *std::ranges::max_element(starts, {}, &Found::value);
   best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.7)), 5, 1e-5);
   for (const double spacing : {6.0, 4.0}) {
     monitor.progress(spacing > 5 ? 0.6 : 0.8, "affine registration");

@@ -73,7 +73,7 @@ std::vector<float> darkOf(const Volume<float>& relative, double below, const Cho
 /// Median, and half of the range of the middle 68 %.
 BrightnessLevel levelOf(std::vector<float> values, double guess) {
   if (values.size() < kFewest) return {guess, kLeastDeviation};
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto at = [&](double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
   };

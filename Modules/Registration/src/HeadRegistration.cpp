@@ -22,8 +22,8 @@ constexpr double kMostOfABrain = 1.55;  // times the template's brain: above, th
 
 Volume<float> maskOf(const Volume<float>& brain) {
   Volume<float> mask(brain.grid);
-  std::transform(brain.data.begin(), brain.data.end(), mask.data.begin(),
-                 [](float value) { return value > 0 ? 1.0f : 0.0f; });
+  std::ranges::transform(brain.data, mask.data.begin(),
+                         [](float value) { return value > 0 ? 1.0f : 0.0f; });
   return mask;
 }
 
@@ -36,8 +36,7 @@ Volume<float> grown(const Volume<float>& mask, double by) {
 }
 
 double volumeAboveZero(const Volume<float>& image) {
-  const auto inside =
-      std::count_if(image.data.begin(), image.data.end(), [](float value) { return value > 0; });
+  const auto inside = std::ranges::count_if(image.data, [](float value) { return value > 0; });
   return static_cast<double>(inside) * image.grid.voxelVolume();
 }
 

@@ -122,8 +122,8 @@ Halfway halfwayOf(const std::array<Volume<float>, 2>& images, const Motion& moti
 double correlationOf(const Halfway& halfway) {
   Eigen::ArrayXd a(static_cast<Eigen::Index>(halfway.head.size())), b(a.size());
   for (Eigen::Index n = 0; n < a.size(); ++n) {
-    a[n] = halfway.a[halfway.head[static_cast<std::size_t>(n)]];
-    b[n] = halfway.b[halfway.head[static_cast<std::size_t>(n)]];
+    a[n] = halfway.a[halfway.head[n]];
+    b[n] = halfway.b[halfway.head[n]];
   }
   a -= a.mean();
   b -= b.mean();
@@ -265,7 +265,7 @@ SessionAverage averageSessions(const std::vector<Volume<float>>& sessions, const
   for (std::size_t s = 0; s < sessions.size(); ++s) {
     checkpoint(monitor);
     Volume<float> session(grid);
-    parallelFor(session.size(), 1 << 14, [&](std::size_t v) {
+    parallelFor(session.size(), [&](std::size_t v) {
       const auto [i, j, k] = grid.subscripts(v);
       const Point at = average.toSession[s] * grid.toWorld(Vector(i, j, k));
       session[v] = gains[s] * cubicAt(sessions[s], sessions[s].grid.toIndex(at));

@@ -129,7 +129,7 @@ std::vector<double> finiteInOrder(const Eigen::VectorXd& values) {
   for (const double v : values) {
     if (std::isfinite(v)) sorted.push_back(v);
   }
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   return sorted;
 }
 
@@ -176,8 +176,7 @@ std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles)
     high += half;
   }
   const auto share = sharesOf(sorted, low, high), other = sharesOf(behind, low, high);
-  const double most = std::max(*std::max_element(share.begin(), share.end()),
-                               *std::max_element(other.begin(), other.end()));
+  const double most = std::max(*std::ranges::max_element(share), *std::ranges::max_element(other));
   const Axes axes{low, high, 0, 1.05 * most};
   std::string svg = head(axes, titles, true, behind.empty() ? 0 : kLegendRow);
   const double binWidth = (high - low) / kBins;

@@ -143,7 +143,7 @@ ColourScale scaleFor(const Eigen::VectorXd& values, std::string title, std::stri
   }
   ColourScale scale{.title = std::move(title), .unit = std::move(unit)};
   if (sorted.empty()) return scale;
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   const std::size_t n = sorted.size();
   scale.low = sorted[n / 50];
   scale.high = sorted[n - 1 - n / 50];

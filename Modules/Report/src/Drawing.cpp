@@ -323,7 +323,7 @@ std::string unitText(std::string_view unit) {
     if (raised && c == '-') {
       text += "\u207b";
     } else if (raised && digit) {
-      text += kRaised[static_cast<std::size_t>(c - '0')];
+      text += kRaised[c - '0'];
     } else if (c == '^') {
       raised = true;
     } else {

@@ -62,10 +62,10 @@ std::vector<std::int32_t> facesInOrder(const Faces& faces) {
   std::vector<std::array<std::int32_t, 3>> sorted;
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
     std::array<std::int32_t, 3> face = {faces(f, 0), faces(f, 1), faces(f, 2)};
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+    std::rotate(face.begin(), std::ranges::min_element(face), face.end());
     sorted.push_back(face);
   }
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   std::vector<std::int32_t> corners;
   for (const auto& face : sorted) corners.insert(corners.end(), face.begin(), face.end());
   return corners;

@@ -96,7 +96,7 @@ Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
   for (std::size_t f = 0; f < frames.size(); ++f) {
     Positions positions(static_cast<Eigen::Index>(evolution.moved.size()), 3);
     for (std::size_t m = 0; m < evolution.moved.size(); ++m) {
-      positions.row(static_cast<Eigen::Index>(m)) = frames[f].positions.row(evolution.moved[m]);
+      positions.row(m) = frames[f].positions.row(evolution.moved[m]);
     }
     evolution.frames.push_back(std::move(positions));
     evolution.frameTitles.push_back("frame " + std::to_string(f));
@@ -163,8 +163,7 @@ std::string evolutionJson(const Evolution& evolution) {
     std::vector<std::int32_t> shift;
     for (Eigen::Index i = 0; i < shape.positions.size(); ++i) {
       const int axis = static_cast<int>(i % 3);
-      shift.push_back(quantise(shape.positions(i / 3, axis), axis) -
-                      positions[static_cast<std::size_t>(i)]);
+      shift.push_back(quantise(shape.positions(i / 3, axis), axis) - positions[i]);
     }
     json += (&shape == evolution.shapes.data() ? "" : ",") + std::string("{\"name\":") +
             nlohmann::json(shape.name).dump() + ",\"shift\":" + packIntegers(shift, 3) + "}";

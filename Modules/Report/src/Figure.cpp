@@ -70,7 +70,7 @@ Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int
   if (!view.focus.empty()) {
     seen.positions.resize(static_cast<Eigen::Index>(view.focus.size()), 3);
     for (std::size_t v = 0; v < view.focus.size(); ++v) {
-      seen.positions.row(static_cast<Eigen::Index>(v)) = mesh.positions.row(view.focus[v]);
+      seen.positions.row(v) = mesh.positions.row(view.focus[v]);
     }
   }
   const TriangleMesh& shown = view.focus.empty() ? mesh : seen;
@@ -149,7 +149,7 @@ Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& cont
   for (const float v : image.data) {
     if (v > 0 && std::isfinite(v)) values.push_back(v);
   }
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
   if (!values.empty()) grey.high = 1.05 * values[values.size() - 1 - values.size() / 200];
   WorldBox frame = tissue.empty() ? box : tissue;

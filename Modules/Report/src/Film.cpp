@@ -33,7 +33,7 @@ TriangleMesh placesOf(const std::vector<FilmFrame>& frames,
   TriangleMesh all;
   all.positions.resize(static_cast<Eigen::Index>(places.size()), 3);
   for (std::size_t n = 0; n < places.size(); ++n) {
-    all.positions.row(static_cast<Eigen::Index>(n)) = places[n].transpose();
+    all.positions.row(n) = places[n].transpose();
   }
   return all;
 }

@@ -75,9 +75,9 @@ void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, st
                                   picture.height - 0.5 * letters);
       return Box{{x - half, y - 1.35 * letters}, {x + half, y + 0.35 * letters}};
     };
-    const auto free = std::find_if(kRowsAside.begin(), kRowsAside.end(), [&](double row) {
+    const auto free = std::ranges::find_if(kRowsAside, [&](double row) {
       const Box box = boxAt(row);
-      return std::none_of(taken.begin(), taken.end(), [&](const Box& b) { return b.meets(box); });
+      return std::ranges::none_of(taken, [&](const Box& b) { return b.meets(box); });
     });
     const Box box = boxAt(free == kRowsAside.end() ? 0.0 : *free);
     taken.push_back(box);

@@ -81,9 +81,7 @@ Palette paletteOf(const std::vector<Picture>& frames) {
   }
   std::vector<ColourBox> boxes = {colourBoxOf(bins, 0, bins.size())};
   while (boxes.size() < kColours) {
-    const auto widest = std::max_element(
-        boxes.begin(), boxes.end(),
-        [](const ColourBox& a, const ColourBox& b) { return a.spread < b.spread; });
+    const auto widest = std::ranges::max_element(boxes, {}, &ColourBox::spread);
     if (!(widest->spread > 0)) break;
     const ColourBox box = *widest;
     double n = 0, sum = 0;
@@ -157,7 +155,7 @@ std::string compressLzw(const std::vector<std::uint8_t>& indices) {
     emit(prefix);
     if (count == 4096) {
       emit(kClear);
-      std::fill(next.begin(), next.end(), std::int16_t{-1});
+      std::ranges::fill(next, std::int16_t{-1});
       count = 258;
       width = 9;
     } else {

@@ -156,18 +156,15 @@ std::string flagHtml(const ReportFlag& flag) {
 std::string verdictHtml(std::vector<ReportFlag> flags) {
   constexpr std::size_t kReasons = 3;
   if (flags.empty()) return "<p class='verdict'>Nothing was found that could be judged.</p>";
-  std::stable_sort(flags.begin(), flags.end(),
-                   [](const auto& a, const auto& b) { return a.level > b.level; });
+  std::ranges::stable_sort(flags, [](const auto& a, const auto& b) { return a.level > b.level; });
   const FlagLevel worst = std::max(flags.front().level, FlagLevel::Good);
   const Word word = worst == FlagLevel::Bad      ? Word{"bad", "Do not use it as it is"}
                     : worst == FlagLevel::Notice ? Word{"notice", "Look at it before you use it"}
                                                  : Word{"good", "Right"};
-  const auto grave = std::count_if(flags.begin(), flags.end(), [](const ReportFlag& flag) {
-    return flag.level >= FlagLevel::Notice;
-  });
-  const auto good = std::count_if(flags.begin(), flags.end(), [](const ReportFlag& flag) {
-    return flag.level == FlagLevel::Good;
-  });
+  const auto grave = std::ranges::count_if(
+      flags, [](const ReportFlag& flag) { return flag.level >= FlagLevel::Notice; });
+  const auto good = std::ranges::count_if(
+      flags, [](const ReportFlag& flag) { return flag.level == FlagLevel::Good; });
   std::string reasons, others;
   for (std::size_t n = 0; n < flags.size(); ++n) {
     const bool isReason = n < kReasons && flags[n].level >= FlagLevel::Notice;
@@ -220,10 +217,10 @@ std::string headHtml(const ReportContent& content) {
 std::string findingsHtml(const ReportFindings& findings) {
   if (findings.rows.empty()) return {};
   std::string html =
-      "<section id='numbers'><h2>What was found</h2><div class='wide' tabindex='0' "
-      "role='region' aria-label='What was found'><table class='findings'>";
-  const bool isExpected = std::any_of(findings.rows.begin(), findings.rows.end(),
-                                      [](const auto& row) { return !row.expected.empty(); });
+      "<section id='numbers'><h2>What was found</h2><div class='wide' tabindex='0' role='region' "
+      "aria-label='What was found'><table class='findings'>";
+  const bool isExpected =
+      std::ranges::any_of(findings.rows, [](const auto& row) { return !row.expected.empty(); });
   if (findings.columns.size() > 1 || isExpected) {
     html += "<thead><tr><td></td>";
     for (const std::string& column : findings.columns) {
@@ -334,8 +331,8 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
   if (mosaic.after) {
     html += "<span class='states'><label><input type='checkbox' class='to-other'> " +
             escapeHtml(mosaic.states[1]) + " instead of " + escapeHtml(mosaic.states[0]) +
-            "</label> <button type='button' class='flicker' aria-pressed='false'>Flicker</button>"
-            "</span> &nbsp; ";
+            "</label> <button type='button' class='flicker' "
+            "aria-pressed='false'>Flicker</button></span> &nbsp; ";
   }
   html += mosaic.slices.convention == SideConvention::Neurological
               ? "Neurological convention: the person's left is on the left."
@@ -485,9 +482,8 @@ std::string contentsHtml(const std::string& page) {
 
 std::string reportPage(const ReportContent& content) {
   std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
-      "<link rel=\"icon\" href=\"data:,\"><title>";
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>";
   html +=
       escapeHtml(content.title) + "</title>\n<style>\n" + kPageStyle + "</style></head><body>\n";
   html += "<header><h1>" + escapeHtml(content.title) + "</h1></header>";

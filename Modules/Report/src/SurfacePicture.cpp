@@ -217,8 +217,7 @@ Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eig
   constexpr Colour kPlain = {0.60f, 0.58f, 0.56f};
   const bool parts = !keys.empty() && border == Border::AroundFaces;
   const bool outside = parts && !surface.isWithin(face, keys);
-  const auto nearest =
-      static_cast<int>(std::max_element(weight.begin(), weight.end()) - weight.begin());
+  const auto nearest = static_cast<int>(std::ranges::max_element(weight) - weight.begin());
   Colour base = kPlain;
   if (!colours.empty() && filling == Filling::Discrete && !outside) {
     base = colours[surface.faces(face, nearest)];
@@ -249,14 +248,13 @@ void SurfaceScene::Implementation::measureOpenness(const TriangleMesh& mesh) {
   parallelForBlocks(count, 2048, [&](std::size_t begin, std::size_t end) {
     const FlushDenormals flush;
     for (std::size_t v = begin; v < end; ++v) {
-      const Eigen::Vector3f n = normals.row(static_cast<Eigen::Index>(v)).transpose();
+      const Eigen::Vector3f n = normals.row(v).transpose();
       if (n.squaredNorm() < 0.5f) continue;
       const Eigen::Vector3f a = perpendicular(n);
       const Eigen::Vector3f b = n.cross(a);
       // A different turn at each vertex; averaging over neighbours then sees many directions.
       const float turn = static_cast<float>((v * 2654435761u) & 0xffffu) / 65536.0f;
-      const Eigen::Vector3f origin =
-          positions.row(static_cast<Eigen::Index>(v)).transpose() + lift * n;
+      const Eigen::Vector3f origin = positions.row(v).transpose() + lift * n;
       float open = 0;
       for (const Eigen::Vector3f& d : skyDirections(turn)) {
         const Eigen::Vector3f direction = d.x() * a + d.y() * b + d.z() * n;

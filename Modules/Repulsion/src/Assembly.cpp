@@ -42,7 +42,7 @@ KnotValue assemble(const MovingSet& set, const Positions& positions,
     }
   }
   for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    if (!set.vertexMoves[static_cast<std::size_t>(v)]) result.gradient.row(v).setZero();
+    if (!set.vertexMoves[v]) result.gradient.row(v).setZero();
   }
   return result;
 }

@@ -397,7 +397,7 @@ void ClusterTree::writeMoments(const SourcePacker& packer, double unit) {
   const double area = inverseUnit * inverseUnit;
   moments_.resize(nodes_.size());
   balls_.resize(nodes_.size());
-  parallelFor(nodes_.size(), 1024, [&](std::size_t n) {
+  parallelFor(nodes_.size(), [&](std::size_t n) {
     const Part& part = sums_[n];
     Node& node = nodes_[n];
     node.centre = part.centre;
@@ -425,7 +425,7 @@ void ClusterTree::build(const Positions& positions, const Faces& faces,
   groups_.clear();
   if (members.empty()) return;
   keys_.resize(members.size());
-  parallelFor(members.size(), 4096, [&](std::size_t i) {
+  parallelFor(members.size(), [&](std::size_t i) {
     const Corners c = cornersOf(positions, faces, members[i]);
     const Point centroid = (c[0] + c[1] + c[2]) / 3;
     for (int a = 0; a < 3; ++a) keys_[i].centroid[a] = static_cast<float>(centroid[a]);

@@ -9,8 +9,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "Kernels.cpp"

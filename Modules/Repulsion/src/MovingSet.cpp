@@ -73,7 +73,7 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
       const std::int32_t v = faces(s, k);
       found.insert(found.end(), around.begin() + begin[v], around.begin() + begin[v + 1]);
     }
-    std::sort(found.begin(), found.end());
+    std::ranges::sort(found);
     found.erase(std::unique(found.begin(), found.end()), found.end());
     touching_.insert(touching_.end(), found.begin(), found.end());
     touchingBegin_.push_back(touching_.size());
@@ -90,8 +90,8 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
       };
       commonFirst(pair.cornersS, cornersT);
       commonFirst(pair.cornersT, cornersS);
-      const auto common = std::count_if(cornersS.begin(), cornersS.end(),
-                                        [&](std::int32_t v) { return contains(cornersT, v); });
+      const auto common =
+          std::ranges::count_if(cornersS, [&](std::int32_t v) { return contains(cornersT, v); });
       if (common == 3) {
         throw InvalidInput("knot energy: faces " + std::to_string(s) + " and " + std::to_string(t) +
                            " lie on the same three vertices; their energy is infinite; remove one");

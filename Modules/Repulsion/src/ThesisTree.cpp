@@ -59,7 +59,7 @@ std::vector<std::vector<std::int32_t>> neighboursAbove(
       }
     }
     auto& list = result[n];
-    std::sort(list.begin(), list.end());
+    std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
   return result;
@@ -243,9 +243,9 @@ ThesisTree::ThesisTree(const TriangleMesh& mesh, const std::vector<bool>& vertex
       const auto& around = at[mesh.faces(static_cast<Eigen::Index>(f), k)];
       list.insert(list.end(), around.begin(), around.end());
     }
-    std::sort(list.begin(), list.end());
+    std::ranges::sort(list);
     list.erase(std::unique(list.begin(), list.end()), list.end());
-    list.erase(std::find(list.begin(), list.end(), static_cast<std::int32_t>(f)));
+    list.erase(std::ranges::find(list, static_cast<std::int32_t>(f)));
   }
   tree_ = buildMergingTree(centroids, areas, neighbours);
 }
@@ -294,7 +294,7 @@ KnotValue ThesisTree::evaluate(const Positions& positions) const {
       for (std::int32_t t = 0; t < faceCount; ++t) {
         if ((tree.nodes[t].centroid - tree.nodes[s].centroid).squaredNorm() >= squaredNear)
           continue;
-        if (std::binary_search(touching.begin(), touching.end(), t)) continue;
+        if (std::ranges::binary_search(touching, t)) continue;
         exact.push_back(t);
         const PairIntegral pair =
             integrateApart(corners, cornersOf(positions, set_->faces, t), PairAccuracy::Coarse);

@@ -48,7 +48,7 @@ std::vector<double> depthsFromText(std::string_view text) {
       throw InvalidInput(shown(word) +
                          " is neither a number of depths nor a depth from 0 (white) to 1 (pial)");
     }
-    if (std::find(depths.begin(), depths.end(), value) != depths.end()) {
+    if (std::ranges::find(depths, value) != depths.end()) {
       throw InvalidInput(shown(word) + " is there twice");
     }
     depths.push_back(value);

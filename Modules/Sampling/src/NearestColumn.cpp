@@ -23,7 +23,7 @@ std::vector<ColumnPlace> nearestColumns(const TriangleMesh& white, const Triangl
     }
   }
   parallelFor(places.size(), 1, [&](std::size_t p) {
-    const Point point = points.row(static_cast<Eigen::Index>(p)).transpose();
+    const Point point = points.row(p).transpose();
     double least = kInfinity;
     ColumnPlace& place = places[p];
     for (Eigen::Index v = 0; v < white.vertexCount(); ++v) {

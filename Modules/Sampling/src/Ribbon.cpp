@@ -15,8 +15,7 @@
 namespace explica::sampling {
 namespace {
 
-constexpr int kLayers = 10;                 // between white and pial surface
-constexpr std::size_t kRibbonGrain = 4096;  // elements a task
+constexpr int kLayers = 10;         // between white and pial surface
 constexpr double kThinnest = 1e-3;  // mm: where the surfaces touch, places count a little still
 
 /// Centres of the four triangles into which the middles of its edges cut a face.
@@ -40,8 +39,8 @@ struct Layer {
 Layer layerAt(const TriangleMesh& white, const TriangleMesh& pial, double depth) {
   Layer layer{(1 - depth) * white.positions + depth * pial.positions, {}};
   layer.quarter.resize(static_cast<std::size_t>(white.faceCount()));
-  parallelFor(layer.quarter.size(), kRibbonGrain, [&](std::size_t f) {
-    const auto face = white.faces.row(static_cast<Eigen::Index>(f));
+  parallelFor(layer.quarter.size(), [&](std::size_t f) {
+    const auto face = white.faces.row(f);
     const auto corner = [&](int k) -> Point { return layer.corners.row(face[k]).transpose(); };
     const double area = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
     double thickness = kThinnest;
@@ -55,7 +54,7 @@ Layer layerAt(const TriangleMesh& white, const TriangleMesh& pial, double depth)
 
 Positions placesIn(const Layer& layer, const Faces& faces, const std::array<double, 3>& weights) {
   Positions places(faces.rows(), 3);
-  parallelFor(static_cast<std::size_t>(faces.rows()), kRibbonGrain, [&](std::size_t f) {
+  parallelFor(static_cast<std::size_t>(faces.rows()), [&](std::size_t f) {
     const auto row = static_cast<Eigen::Index>(f);
     places.row(row) = weights[0] * layer.corners.row(faces(row, 0)) +
                       weights[1] * layer.corners.row(faces(row, 1)) +
@@ -66,7 +65,7 @@ Positions placesIn(const Layer& layer, const Faces& faces, const std::array<doub
 
 void add(const std::vector<float>& values, const std::vector<double>& volumes, FaceSums& sums) {
   const std::size_t faces = volumes.size(), frames = values.size() / faces;
-  parallelFor(faces, kRibbonGrain, [&](std::size_t f) {
+  parallelFor(faces, [&](std::size_t f) {
     sums.all[f] += volumes[f];
     for (std::size_t at = f; at < frames * faces; at += faces) {
       if (std::isnan(values[at])) continue;
@@ -85,7 +84,7 @@ std::vector<float> atVertices(const FaceSums& sums, const TriangleMesh& mesh) {
   parallelFor(frames, 1, [&](std::size_t frame) {
     std::vector<double> value(vertices), volume(vertices), all(vertices);
     for (std::size_t f = 0; f < faces; ++f) {
-      for (const std::int32_t v : mesh.faces.row(static_cast<Eigen::Index>(f))) {
+      for (const std::int32_t v : mesh.faces.row(f)) {
         value[v] += sums.value[frame * faces + f];
         volume[v] += sums.volume[frame * faces + f];
         all[v] += sums.all[f];

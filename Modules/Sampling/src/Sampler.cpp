@@ -71,8 +71,8 @@ Sampler::Sampler(const Grid& grid, const Positions& points, Interpolation interp
     }
     mask_ = mask->data;
   }
-  parallelFor(corners_.size(), kVoxelGrain, [&](std::size_t p) {
-    const Vector index = grid_.toIndex(points.row(static_cast<Eigen::Index>(p)).transpose());
+  parallelFor(corners_.size(), [&](std::size_t p) {
+    const Vector index = grid_.toIndex(points.row(p).transpose());
     Corner& corner = corners_[p];
     corner.inside = index.allFinite();
     for (int axis = 0; axis < 3; ++axis) {
@@ -100,10 +100,9 @@ void Sampler::orderChunks() {
     }
     places[c] = {place, static_cast<std::uint32_t>(c)};
   }
-  std::sort(places.begin(), places.end());
+  std::ranges::sort(places);
   chunks_.resize(count);
-  std::transform(places.begin(), places.end(), chunks_.begin(),
-                 [](const auto& place) { return place.second; });
+  std::ranges::transform(places, chunks_.begin(), [](const auto& place) { return place.second; });
 }
 
 bool Sampler::allKnown(const Corner& corner, const std::uint8_t* whole, int reach) const {
@@ -138,7 +137,7 @@ void Sampler::linear(const Corner& corner, const float* values, float* to) const
     const float a = w[r] * (1 - x), b = w[r] * x;
     for (int f = 0; f < F; ++f) sum[f] += a * rows[r][f] + b * rows[r][F + f];
   }
-  std::copy(sum.begin(), sum.end(), to);
+  std::ranges::copy(sum, to);
 }
 
 template <int F>

@@ -15,8 +15,6 @@
 namespace explica::sampling {
 namespace {
 
-constexpr std::size_t kTableGrain = 4096;  // elements a task
-
 /// Sums about a first value, so that a large mean does not swallow the deviation.
 struct Sums {
   double shift = kNaN, sum = 0, squares = 0;
@@ -75,7 +73,7 @@ Sums sumsOf(std::span<const float> values, const std::vector<std::uint8_t>& want
 std::vector<float> acrossDepths(std::span<const float> values, std::size_t depths, Across across) {
   const std::size_t count = depths == 0 ? 0 : values.size() / depths;
   std::vector<float> result(count, std::numeric_limits<float>::quiet_NaN());
-  parallelFor(count, kTableGrain, [&](std::size_t v) {
+  parallelFor(count, [&](std::size_t v) {
     double sum = 0;
     float largest = 0;
     int known = 0;
@@ -96,11 +94,11 @@ std::vector<Label> majorityAcross(std::span<const Label> labels, std::size_t dep
   std::vector<std::size_t> order(depths);
   for (std::size_t d = 0; d < depths; ++d) order[d] = d;
   const double middle = 0.5 * static_cast<double>(depths - 1);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     return std::abs(static_cast<double>(a) - middle) < std::abs(static_cast<double>(b) - middle);
   });
   std::vector<Label> result(count, kNoLabel);
-  parallelFor(count, kTableGrain, [&](std::size_t v) {
+  parallelFor(count, [&](std::size_t v) {
     std::size_t most = 0;
     for (const std::size_t d : order) {
       const Label label = labels[d * count + v];
@@ -128,7 +126,7 @@ Regions::Regions(const std::vector<RegionTable>& parcellations) {
     }
     std::map<Label, std::int32_t> number;
     for (const RegionName& entry : one.table) {
-      if (std::find(one.keys.begin(), one.keys.end(), entry.key) == one.keys.end()) continue;
+      if (std::ranges::find(one.keys, entry.key) == one.keys.end()) continue;
       if (!number.emplace(entry.key, static_cast<std::int32_t>(names_.size())).second) continue;
       names_.push_back(entry.name);
     }

@@ -13,8 +13,7 @@
 namespace explica::sampling {
 namespace {
 
-constexpr int kPointsAcross = 5;      // of a voxel, along each axis
-constexpr std::size_t kGrain = 1024;  // elements a task
+constexpr int kPointsAcross = 5;  // of a voxel, along each axis
 
 void requireGrid(const Grid& a, const Grid& b, const char* name) {
   if (!sameGrid(a, b)) {
@@ -74,7 +73,7 @@ LayerShares layersByDepth(const TissueVoxels& tissue, int layers) {
   const auto offset = offsets();
   constexpr float kPoints = kPointsAcross * kPointsAcross * kPointsAcross;
   std::vector<std::vector<std::pair<std::int32_t, float>>> parts(count);
-  parallelFor(count, kGrain, [&](std::size_t n) {
+  parallelFor(count, [&](std::size_t n) {
     // Depth per step of the whole voxel along each of its axes.
     const Vector slope = (tissue.grid.direction.transpose() * tissue.along[n].cast<double>())
                              .cwiseProduct(tissue.grid.spacing) /
@@ -85,8 +84,8 @@ LayerShares layersByDepth(const TissueVoxels& tissue, int layers) {
         for (const double x : offset) {
           const double depth = tissue.depth[n] + slope.dot(Vector(x, y, z));
           const int layer = std::clamp(static_cast<int>(std::floor(depth * layers)), 0, layers - 1);
-          auto found = std::find_if(part.begin(), part.end(),
-                                    [layer](const auto& p) { return p.first == layer; });
+          auto found =
+              std::ranges::find_if(part, [layer](const auto& p) { return p.first == layer; });
           if (found == part.end()) found = part.insert(part.end(), {layer, 0.0F});
           found->second += 1;
         }

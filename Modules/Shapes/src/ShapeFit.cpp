@@ -117,12 +117,12 @@ Eigen::VectorXd withOpen(const Eigen::MatrixXd& gram, const Eigen::VectorXd& rig
                          const Eigen::VectorXd& least, const std::vector<bool>& atBound) {
   std::vector<Eigen::Index> open;
   for (Eigen::Index k = 0; k < right.size(); ++k) {
-    if (!atBound[static_cast<std::size_t>(k)]) open.push_back(k);
+    if (!atBound[k]) open.push_back(k);
   }
   Eigen::VectorXd x = least;
   const Eigen::VectorXd load = right - gram * x;
   const Eigen::VectorXd step = gram(open, open).ldlt().solve(Eigen::VectorXd(load(open)));
-  for (std::size_t q = 0; q < open.size(); ++q) x[open[q]] += step[static_cast<Eigen::Index>(q)];
+  for (std::size_t q = 0; q < open.size(); ++q) x[open[q]] += step[q];
   return x;
 }
 

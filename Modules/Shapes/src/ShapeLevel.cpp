@@ -82,11 +82,11 @@ Volume<float> fieldOf(const HarmonicShape& shape, int voxels) {
     }
     Positions points(static_cast<Eigen::Index>(places.size()), 3);
     for (std::size_t p = 0; p < places.size(); ++p) {
-      points.row(static_cast<Eigen::Index>(p)) = places[p].transpose();
+      points.row(p) = places[p].transpose();
     }
     const Eigen::VectorXd values = valuesAt(shape, points);
     for (std::size_t p = 0; p < within.size(); ++p) {
-      field[within[p]] = static_cast<float>(values[static_cast<Eigen::Index>(p)]);
+      field[within[p]] = static_cast<float>(values[p]);
     }
   }
   return field;
@@ -153,7 +153,7 @@ LevelDistance distanceBetween(const TriangleMesh& shape, const TriangleMesh& tar
   const geometry::FaceTree tree(target);
   std::vector<double> distances(static_cast<std::size_t>(shape.vertexCount()));
   parallelFor(distances.size(), 256, [&](std::size_t v) {
-    const Point q = shape.positions.row(static_cast<Eigen::Index>(v)).transpose();
+    const Point q = shape.positions.row(v).transpose();
     distances[v] = std::sqrt(tree.closestPoint(q).squaredDistance);
   });
   LevelDistance result;

@@ -13,10 +13,10 @@ void describe(Results& t, const EmbedSummary& s) {
   t.number("distance_max", "Largest distance from the target", "mm", "", s.distanceMax)
       .atMost(kClose * s.innerRadius, Judgement::Look, "a twentieth of the inner radius")
       .inHead();
-  t.change("symmetric_difference", "Symmetric difference", "",
-           "What one of shape and target holds and the other does not: mm^2 of a plane, mm^3 of "
-           "space.",
-           s.symmetricDifference)
+  t.change(
+       "symmetric_difference", "Symmetric difference", "",
+       "What one of shape and target holds and the other does not: mm^2 of a plane, mm^3 of space.",
+       s.symmetricDifference)
       .inHead();
   t.count("dimension", "Dimension", "", s.dimension);
   t.count("targets", "Targets", "", s.targets).inHead();

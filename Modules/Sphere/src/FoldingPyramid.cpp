@@ -23,7 +23,7 @@ Eigen::VectorXd smoothed(const Eigen::VectorXd& map, const geometry::IndexLists&
   Eigen::VectorXd result(map.size());
   for (Eigen::Index v = 0; v < map.size(); ++v) {
     double sum = 0;
-    const auto neighbours = around[static_cast<std::size_t>(v)];
+    const auto neighbours = around[v];
     for (const std::int32_t u : neighbours) sum += map[u];
     result[v] = (map[v] + sum / static_cast<double>(neighbours.size())) / 2;
   }
@@ -53,7 +53,7 @@ Eigen::VectorXd weightsOf(const Eigen::VectorXd& sd) {
 Eigen::VectorXd valuesAt(const geometry::SphereLocator& locator, const Eigen::VectorXd& values,
                          const Positions& directions) {
   Eigen::VectorXd result(directions.rows());
-  parallelFor(static_cast<std::size_t>(directions.rows()), 512, [&](std::size_t n) {
+  parallelFor(static_cast<std::size_t>(directions.rows()), [&](std::size_t n) {
     const auto v = static_cast<Eigen::Index>(n);
     const auto place = locator.locate(directions.row(v).transpose());
     double sum = 0;
@@ -71,7 +71,7 @@ std::vector<FoldingLevel> foldingPyramid(const FoldingSphere& folding, int level
   for (int n = level; n >= 0; --n) {
     const TriangleMesh grid = geometry::makeIcosphere(n);
     const auto around = geometry::buildTopology(grid.faces, grid.vertexCount()).vertexVertices;
-    FoldingLevel& here = pyramid[static_cast<std::size_t>(n)];
+    FoldingLevel& here = pyramid[n];
     for (std::size_t m = 0; m < 2; ++m) {
       const auto& raw = m == 0 ? folding.sulc : folding.curvature;
       const auto& rawSd = m == 0 ? folding.sulcSd : folding.curvatureSd;

@@ -65,10 +65,9 @@ class Untangling {
       for (int k = 0; k < 3; ++k) consider(faces(f, k));
     }
     while (!plans_.empty()) {
-      const auto best =
-          std::max_element(plans_.begin(), plans_.end(), [](const auto& a, const auto& b) {
-            return a.second.before - a.second.after < b.second.before - b.second.after;
-          });
+      const auto best = std::ranges::max_element(plans_, [](const auto& a, const auto& b) {
+        return a.second.before - a.second.after < b.second.before - b.second.after;
+      });
       const std::int32_t v = best->first;
       const std::optional<Merger> merger = bestMerger(v);  // neighbours may have changed since
       if (merger)
@@ -114,7 +113,7 @@ class Untangling {
   }
 
   [[nodiscard]] bool joined(std::int32_t a, std::int32_t b) const {
-    return std::find(rings_[a].begin(), rings_[a].end(), b) != rings_[a].end();
+    return std::ranges::find(rings_[a], b) != rings_[a].end();
   }
 
   /// The one that leaves the fewest faces turned over; none where each would join twice what is
@@ -148,12 +147,12 @@ class Untangling {
     std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(merger.centre),
                 ring.end());
     Loop& centre = rings_[ring[0]];
-    auto at = centre.erase(std::find(centre.begin(), centre.end(), v));
+    auto at = centre.erase(std::ranges::find(centre, v));
     centre.insert(at, ring.begin() + 2, ring.end() - 1);
     std::erase(rings_[ring[1]], v);
     std::erase(rings_[ring.back()], v);
     for (std::size_t n = 2; n + 1 < ring.size(); ++n)
-      std::replace(rings_[ring[n]].begin(), rings_[ring[n]].end(), v, ring[0]);
+      std::ranges::replace(rings_[ring[n]], v, ring[0]);
     removals_.push_back(std::move(removal));
     plans_.erase(v);
     for (const std::int32_t u : ring) consider(u);
@@ -193,7 +192,7 @@ class Untangling {
       if (!isWritten(v)) cramped.insert(v);
     }
     for (int width = 0; width < kMostRings; ++width) {
-      if (std::all_of(cramped.begin(), cramped.end(), isWritten)) return;
+      if (std::ranges::all_of(cramped, isWritten)) return;
       for (const std::int32_t v : std::set(cramped)) {
         cramped.insert(rings_[v].begin(), rings_[v].end());
       }

@@ -50,7 +50,7 @@ class FoldingEnergy final : public VertexEnergy {
 
   void add(const Positions& sphere, const std::vector<TangentFrame>& frames,
            geometry::FaceSystem& system) const override {
-    parallelFor(static_cast<std::size_t>(sphere.rows()), kVerticesATask, [&](std::size_t v) {
+    parallelFor(static_cast<std::size_t>(sphere.rows()), [&](std::size_t v) {
       const Terms terms = at(sphere, v);
       const auto vertex = static_cast<std::int32_t>(v);
       for (std::size_t m = 0; m < 2; ++m) {
@@ -116,7 +116,7 @@ Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Po
       const std::int32_t v = fine.faces(f, k), u = fine.faces(f, (k + 1) % 3);
       for (const auto& [a, b] : {std::pair{v, u}, std::pair{u, v}}) {
         if (a < coarse.vertexCount() || b >= coarse.vertexCount()) continue;
-        auto& pair = ends[static_cast<std::size_t>(a)];
+        auto& pair = ends[a];
         if (pair[0] < 0 || pair[0] == b) {
           pair[0] = b;
         } else {
@@ -126,7 +126,7 @@ Positions refined(const TriangleMesh& coarse, const TriangleMesh& fine, const Po
     }
   }
   for (Eigen::Index v = coarse.vertexCount(); v < fine.vertexCount(); ++v) {
-    const auto& [a, b] = ends[static_cast<std::size_t>(v)];
+    const auto& [a, b] = ends[v];
     result.row(v) = (places.row(a) + places.row(b)).normalized();
   }
   return result;
@@ -140,8 +140,7 @@ struct Start {
 };
 
 void keepBest(std::vector<Start>& starts, std::size_t count) {
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const Start& a, const Start& b) { return a.energy < b.energy; });
+  std::ranges::stable_sort(starts, {}, &Start::energy);
   starts.resize(count);
 }
 
@@ -176,7 +175,7 @@ void carry(const FoldingSphere& moving, const TriangleMesh& grid, const Position
   const Eigen::VectorXd deformedAreas = geometry::faceAreas(deformed.mesh());
   TriangleMesh sphere = moving.sphere;
   result.arealLog2.resize(sphere.vertexCount());
-  parallelFor(static_cast<std::size_t>(sphere.vertexCount()), kVerticesATask, [&](std::size_t n) {
+  parallelFor(static_cast<std::size_t>(sphere.vertexCount()), [&](std::size_t n) {
     const auto v = static_cast<Eigen::Index>(n);
     const auto place = deformed.locate(moving.sphere.positions.row(v).transpose());
     Point sum = Point::Zero();

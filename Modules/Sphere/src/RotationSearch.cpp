@@ -57,7 +57,7 @@ double costOf(const FoldingLevel& moving, const FoldingLevel& target,
 std::vector<Candidate> apart(const std::vector<Candidate>& sorted) {
   std::vector<Candidate> kept;
   for (const Candidate& one : sorted) {
-    const bool near = std::any_of(kept.begin(), kept.end(), [&](const Candidate& better) {
+    const bool near = std::ranges::any_of(kept, [&](const Candidate& better) {
       return better.rotation.angularDistance(one.rotation) < kApart;
     });
     if (!near) kept.push_back(one);
@@ -77,8 +77,7 @@ std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& mo
     candidates[n].rotation = spiralRotation(static_cast<int>(n));
     candidates[n].cost = costOf(moving[kLevel], target[kLevel], candidates[n].rotation);
   });
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  std::ranges::stable_sort(candidates, {}, &Candidate::cost);
   std::vector<Eigen::Matrix3d> rotations;
   for (const Candidate& one : apart(candidates))
     rotations.push_back(one.rotation.toRotationMatrix());

@@ -159,7 +159,7 @@ double SphereEnergy::largestStep(const Positions& sphere, const Positions& step)
     }
     least[begin / kFacesATask] = first;
   });
-  return std::min(1.0, flattening::kShareOfWay * *std::min_element(least.begin(), least.end()));
+  return std::min(1.0, flattening::kShareOfWay * *std::ranges::min_element(least));
 }
 
 std::vector<RestFace> restOnUnitSphere(const flattening::IntrinsicMesh& mesh) {

@@ -31,7 +31,7 @@ void placeTetrahedron(const Faces& faces, Positions& sphere) {
   constexpr std::array<std::array<double, 3>, 4> kCorners = {
       {{1, 1, 1}, {-1, -1, 1}, {1, -1, -1}, {-1, 1, -1}}};
   std::vector<std::int32_t> vertices(faces.data(), faces.data() + faces.size());
-  std::sort(vertices.begin(), vertices.end());
+  std::ranges::sort(vertices);
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (std::size_t n = 0; n < vertices.size(); ++n) {
     sphere.row(vertices[n]) = Eigen::RowVector3d(kCorners[n].data()).normalized();
@@ -100,8 +100,7 @@ struct Weighed {
 
 /// The value below which this share of the weight is.
 double quantile(std::vector<Weighed> values, double share) {
-  std::sort(values.begin(), values.end(),
-            [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
+  std::ranges::sort(values, {}, &Weighed::value);
   double total = 0, sum = 0;
   for (const Weighed& v : values) total += v.weight;
   for (const Weighed& v : values) {

@@ -14,7 +14,6 @@ namespace {
 constexpr double kDamping = 1e-6;    // of the mean diagonal: holds rotations, which cost nothing
 constexpr double kRounding = 1e-13;  // decrease that the energy, a mean of ones, can tell
 constexpr double kFarthest = 0.5;    // length of a step on the unit sphere
-constexpr std::size_t kVertices = 4096;  // a task
 
 }  // namespace
 
@@ -33,7 +32,7 @@ double SphereSolver::value(const Positions& sphere) const {
 
 bool SphereSolver::findStep(const Positions& sphere) {
   const auto& vertices = system_.vertices();
-  parallelFor(vertices.size(), kVertices, [&](std::size_t n) {
+  parallelFor(vertices.size(), [&](std::size_t n) {
     frames_[vertices[n]] = tangentFrame(sphere.row(vertices[n]).transpose());
   });
   for (double damping = kDamping; damping < 1e3; damping *= 100) {
@@ -54,7 +53,7 @@ bool SphereSolver::findStep(const Positions& sphere) {
 Positions SphereSolver::moved(const Positions& sphere, double share) const {
   Positions tried = sphere;
   const auto& vertices = system_.vertices();
-  parallelFor(vertices.size(), kVertices, [&](std::size_t n) {
+  parallelFor(vertices.size(), [&](std::size_t n) {
     const std::int32_t v = vertices[n];
     tried.row(v) = (sphere.row(v) + share * step_.row(v)).normalized();
   });

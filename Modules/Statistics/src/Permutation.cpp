@@ -302,8 +302,8 @@ void requireChange(const Eigen::MatrixXd& columns, const Shuffler& shuffler,
                    const Contrast& contrast) {
   if (shuffler.count() > 1 && !inSpan(columns, shuffler.invariant())) return;
   throw InvalidInput("contrast '" + contrast.name +
-                     "': no shuffle of people changes what it tests; choose another --exchange "
-                     "or no permutations");
+                     "': no shuffle of people changes what it tests; choose another --exchange or "
+                     "no permutations");
 }
 
 }  // namespace

@@ -161,8 +161,8 @@ JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view
     } else {
       throw InvalidInput("'" + people[i] + "' of '" + std::string(listName) + "' has no row in '" +
                          about.name + "', where column '" + std::string(key) +
-                         "' names people (--person chooses another); add the row, or "
-                         "analyse those in both lists with --subset");
+                         "' names people (--person chooses another); add the row, or analyse those "
+                         "in both lists with --subset");
     }
   }
   for (const auto& row : about.rows) {

@@ -78,7 +78,7 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
     const auto wanted = [&](const std::string& label) {
       return label == participant.label || label == "sub-" + participant.label;
     };
-    if (!labels.empty() && std::none_of(labels.begin(), labels.end(), wanted)) continue;
+    if (!labels.empty() && std::ranges::none_of(labels, wanted)) continue;
     const std::vector<fs::path> sessions = foldersFrom(folder, "ses-");
     if (sessions.empty()) participants.push_back(participantIn(dataset, folder, participant));
     for (const fs::path& session : sessions) {
@@ -87,9 +87,9 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
     }
   }
   for (std::string label : labels) {
-    if (label.rfind("sub-", 0) == 0) label = label.substr(4);
-    if (std::none_of(participants.begin(), participants.end(),
-                     [&](const Participant& p) { return p.label == label; })) {
+    if (label.starts_with("sub-")) label = label.substr(4);
+    if (std::ranges::none_of(participants,
+                             [&](const Participant& p) { return p.label == label; })) {
       throw InvalidInput(dataset.string() + ": has no participant sub-" + label);
     }
   }

@@ -85,8 +85,8 @@ const std::vector<Export> kExports = {
 bool isInSchema(const Export& item) {
   constexpr std::array kEndings = {"_dseg.nii.gz", "_dseg.label.gii", "_mask.nii.gz",
                                    "_probseg.nii.gz"};
-  return std::any_of(kEndings.begin(), kEndings.end(),
-                     [&](const char* ending) { return item.suffix.ends_with(ending); });
+  return std::ranges::any_of(kEndings,
+                             [&](const char* ending) { return item.suffix.ends_with(ending); });
 }
 
 /// What a validator passes over: each kind of file that the schema lacks, by name.

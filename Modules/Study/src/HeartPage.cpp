@@ -32,11 +32,11 @@ std::string rounded(const std::string& text) {
 
 // In addition to the style that all pages share.
 constexpr char kStyle[] =
-    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 1em}"
-    ".scroll{overflow-x:auto}table{border-collapse:collapse}"
-    "td,th{border:1px solid #d5d9dd;padding:4px 10px;text-align:left;vertical-align:top}"
-    "td.n{text-align:right}th{background:#f1f3f5}tr.bad{background:#fbf0ee}"
-    "td.wide{padding:8px 10px "
+    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 "
+    "1em}.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid "
+    "#d5d9dd;padding:4px "
+    "10px;text-align:left;vertical-align:top}td.n{text-align:right}th{background:#f1f3f5}tr.bad{"
+    "background:#fbf0ee}td.wide{padding:8px 10px "
     "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
 
 /// A line of numbers, and below it the pictures or what went wrong.
@@ -66,8 +66,8 @@ std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) 
 
 std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
   const std::vector<std::string> about = aboutColumns(rows);
-  const auto done = std::count_if(rows.begin(), rows.end(),
-                                  [](const HeartRow& row) { return row.state == "done"; });
+  const auto done =
+      std::ranges::count_if(rows, [](const HeartRow& row) { return row.state == "done"; });
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +

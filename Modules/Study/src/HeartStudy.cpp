@@ -26,7 +26,7 @@ constexpr int kDeepest = 4;  // folders between a person and the label volumes
 
 bool isOther(const std::string& name) {
   static const std::set<std::string> others = {"code", "derivatives", "sourcedata", "stimuli"};
-  return name.starts_with(".") || others.count(name) > 0;
+  return name.starts_with(".") || others.contains(name);
 }
 
 std::vector<fs::path> foldersIn(const fs::path& parent) {
@@ -41,7 +41,7 @@ std::vector<fs::path> filesBelow(const fs::path& folder) {
     if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
     if (entry->is_regular_file()) files.push_back(entry->path());
   }
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -54,8 +54,8 @@ std::vector<fs::path> labelsBelow(const fs::path& folder, const HeartLayout& lay
   const std::vector<fs::path> files = filesBelow(folder);
   for (const std::string& ending : layout.endings) {
     std::vector<fs::path> labels;
-    std::copy_if(files.begin(), files.end(), std::back_inserter(labels),
-                 [&](const fs::path& file) { return endsWith(file, ending); });
+    std::ranges::copy_if(files, std::back_inserter(labels),
+                         [&](const fs::path& file) { return endsWith(file, ending); });
     if (!labels.empty()) return labels;
   }
   return {};
@@ -75,7 +75,7 @@ std::vector<HeartSubject> sessionsOf(const fs::path& person, const HeartLayout& 
 }
 
 bool isWanted(const std::string& person, const std::vector<std::string>& wanted) {
-  return wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& one) {
+  return wanted.empty() || std::ranges::any_of(wanted, [&](const std::string& one) {
            return one == person || "sub-" + one == person;
          });
 }

@@ -61,8 +61,7 @@ bool isRegion(const std::string& column) {
 }
 
 bool isRegionMean(const std::string& column) {
-  return isRegion(column) &&
-         std::none_of(std::begin(kWideMeasures), std::end(kWideMeasures), [&](const auto& wide) {
+  return isRegion(column) && std::ranges::none_of(kWideMeasures, [&](const auto& wide) {
            return *wide.ending != '\0' && column.ends_with(wide.ending);
          });
 }

@@ -63,7 +63,7 @@ Heading headingOf(const std::string& column) {
   std::string words = column.substr(dot + 1);
   if (isRegion(column)) return {words, "mm"};
   if (isAbout(column)) return {words, ""};
-  std::replace(words.begin(), words.end(), '_', ' ');
+  std::ranges::replace(words, '_', ' ');
   return {column.substr(0, dot) + ": " + words, ""};
 }
 
@@ -77,8 +77,7 @@ std::string scriptText(const Json& value) {
 }
 
 bool hasRegions(const std::vector<StudyRow>& rows) {
-  return std::any_of(rows.begin(), rows.end(),
-                     [](const StudyRow& row) { return !row.region.empty(); });
+  return std::ranges::any_of(rows, [](const StudyRow& row) { return !row.region.empty(); });
 }
 
 Json headingsOf(const std::vector<std::string>& fixed, const std::vector<std::string>& columns) {
@@ -108,7 +107,7 @@ Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regi
   }
   Json marks = Json::object();
   for (const StudyFlag& flag : flags) {
-    const auto at = std::find(columns.begin(), columns.end(), flag.column);
+    const auto at = std::ranges::find(columns, flag.column);
     const auto index = at == columns.end() ? fixed - 1  // state
                                            : fixed + static_cast<std::size_t>(at - columns.begin());
     marks[std::to_string(index)] = flag.reason;
@@ -150,13 +149,11 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
   for (std::size_t n = 0; n < rows.size(); ++n) {
     data["rows"].push_back(rowJson(rows[n], flags[n], regions, fixed.size(), columns));
   }
-  const auto done = std::count_if(rows.begin(), rows.end(),
-                                  [](const StudyRow& row) { return row.state == "done"; });
-  const auto marked =
-      std::count_if(flags.begin(), flags.end(), [](const auto& row) { return !row.empty(); });
-  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta "
-         "name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" "
-         "href=\"data:,\"><title>" +
+  const auto done =
+      std::ranges::count_if(rows, [](const StudyRow& row) { return row.state == "done"; });
+  const auto marked = std::ranges::count_if(flags, [](const auto& row) { return !row.empty(); });
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+         "content=\"width=device-width\"><link rel=\"icon\" href=\"data:,\"><title>" +
          escapeHtml(title) + "</title><style>" + kStudyStyle + "</style></head><body>\n<main><h1>" +
          escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
          std::to_string(rows.size()) + " hemispheres are done; " + std::to_string(marked) +

@@ -26,14 +26,14 @@ const std::vector<std::vector<std::string>> kAlternatives = {
     {"unfold.center", "unfold.vertex", "unfold.label", "unfold.region"}};
 
 std::string withoutPrefix(const std::string& label) {
-  return label.rfind("sub-", 0) == 0 ? label.substr(4) : label;
+  return label.starts_with("sub-") ? label.substr(4) : label;
 }
 
 /// Puts `more` on top; a null takes an option back to its default.
 void overlay(Json& values, const Json& more) {
   for (const auto& [key, value] : more.items()) {
     for (const auto& group : kAlternatives) {
-      if (std::find(group.begin(), group.end(), key) == group.end()) continue;
+      if (std::ranges::find(group, key) == group.end()) continue;
       for (const auto& other : group) values.erase(other);
     }
   }
@@ -104,8 +104,7 @@ class Planner {
       }
       for (const auto& [name, region] : root_["regions"].items()) {
         if (region.contains("hemispheres") &&
-            std::find(region["hemispheres"].begin(), region["hemispheres"].end(), side) ==
-                region["hemispheres"].end()) {
+            std::ranges::find(region["hemispheres"], side) == region["hemispheres"].end()) {
           continue;
         }
         Json values = shared;
@@ -334,7 +333,7 @@ Study planStudy(const StudyFile& file, const PathOptions& paths,
   std::set<std::string> wanted;
   for (const std::string& label : labels) {
     wanted.insert(withoutPrefix(label));
-    if (std::find(all.begin(), all.end(), withoutPrefix(label)) == all.end()) {
+    if (std::ranges::find(all, withoutPrefix(label)) == all.end()) {
       throw InvalidInput(placeIn(file, {"subjects"}) + "there is no subject " +
                          withoutPrefix(label) + "; `explica study list` names those there are");
     }

@@ -99,8 +99,7 @@ bool hasType(const Json& value, const Json& schema) {
 std::string faultOf(const Json& value, const Json& schema, Place& place) {
   const std::string meaning =
       schema.contains("description") ? " (" + schema["description"].get<std::string>() + ")" : "";
-  if (schema.contains("enum") &&
-      std::find(schema["enum"].begin(), schema["enum"].end(), value) == schema["enum"].end()) {
+  if (schema.contains("enum") && std::ranges::find(schema["enum"], value) == schema["enum"].end()) {
     std::vector<std::string> words;
     for (const auto& word : schema["enum"]) words.push_back(word.get<std::string>());
     return shown(value) + " is not one of " + joined(words) + meaning;

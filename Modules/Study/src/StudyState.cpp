@@ -32,7 +32,7 @@ Json contentOf(const fs::path& path) {
       if (entry.is_regular_file(fault)) found.push_back(entry.path());
     }
   }
-  std::sort(found.begin(), found.end());
+  std::ranges::sort(found);
   for (const fs::path& file : found) {
     files[file.lexically_relative(path).generic_string()] = provenance::digestOf(file).sha256;
   }

@@ -84,7 +84,7 @@ std::string textOf(const Json& value) {
 void addSummary(StudyRow& row, const std::string& step, const Json& summary) {
   static const std::set<std::string> left = {"command", "peak_memory_bytes", "warnings"};
   for (const auto& [key, value] : summary.items()) {
-    if (value.is_structured() || left.count(key) || key.rfind("seconds", 0) == 0) continue;
+    if (value.is_structured() || left.count(key) || key.starts_with("seconds")) continue;
     row.values[step + "." + key] = textOf(value);
   }
 }
@@ -242,8 +242,8 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
 }  // namespace
 
 std::string cellText(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
   return text;
 }
 
@@ -265,13 +265,12 @@ std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subjec
 }
 
 bool isCompared(const std::string& column) {
-  return isRegionMean(column) || std::find(std::begin(kComparedColumns), std::end(kComparedColumns),
-                                           column) != std::end(kComparedColumns);
+  return isRegionMean(column) ||
+         std::ranges::find(kComparedColumns, column) != std::end(kComparedColumns);
 }
 
 bool isFirst(const std::string& column) {
-  return std::find(std::begin(kFirstColumns), std::end(kFirstColumns), column) !=
-         std::end(kFirstColumns);
+  return std::ranges::find(kFirstColumns, column) != std::end(kFirstColumns);
 }
 
 std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows) {
@@ -324,8 +323,8 @@ namespace {
 std::string textOf(const std::vector<StudyRow>& rows, const std::vector<std::string>& columns,
                    bool withFlags) {
   const auto flags = flagsOf(rows);
-  const bool regions = std::any_of(rows.begin(), rows.end(),
-                                   [](const StudyRow& row) { return !row.region.empty(); });
+  const bool regions =
+      std::ranges::any_of(rows, [](const StudyRow& row) { return !row.region.empty(); });
   std::string text = "participant_id\themisphere";
   if (regions) text += "\tregion";
   text += withFlags ? "\tstate\tflags" : "\tstate";

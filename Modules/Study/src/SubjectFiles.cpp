@@ -21,7 +21,7 @@ std::vector<fs::path> entriesOf(const fs::path& folder) {
     entries.push_back(at->path());
   }
   if (fault) throw IOError(folder.string() + ": cannot be read (" + fault.message() + ")");
-  std::sort(entries.begin(), entries.end());
+  std::ranges::sort(entries);
   return entries;
 }
 
@@ -86,7 +86,7 @@ class AnatFolder {
   explicit AnatFolder(const fs::path& folder) {
     for (const fs::path& entry : entriesOf(folder)) {
       const std::string name = entry.filename().string();
-      if (name.rfind("sub-", 0) == 0 && name.find("_space-") == std::string::npos) {
+      if (name.starts_with("sub-") && name.find("_space-") == std::string::npos) {
         files_.push_back(entry);
       }
     }
@@ -171,21 +171,19 @@ SubjectFiles findSubjectFiles(const fs::path& folder) {
   if (!fs::is_directory(folder, fault)) throw InvalidInput(folder.string() + ": is not a folder");
   const auto entries = entriesOf(folder);
   const auto has = [&](const std::string& name) {
-    return std::any_of(entries.begin(), entries.end(),
-                       [&](const fs::path& entry) { return entry.filename() == name; });
+    return std::ranges::any_of(entries,
+                               [&](const fs::path& entry) { return entry.filename() == name; });
   };
   if (has("mri") || has("surf")) return inFreeSurferSubject(folder);
   if (has("anat")) return inAnatFolder(folder / "anat");
-  const bool session = std::any_of(entries.begin(), entries.end(), [](const fs::path& entry) {
-    return entry.filename().string().rfind("ses-", 0) == 0;
-  });
+  const bool session = std::ranges::any_of(
+      entries, [](const fs::path& entry) { return entry.filename().string().starts_with("ses-"); });
   if (session) {
     throw InvalidInput(folder.string() + ": holds sessions; name one of them, as " +
                        (folder / "ses-01").string());
   }
-  if (folder.filename() == "anat" ||
-      std::any_of(entries.begin(), entries.end(), [](const fs::path& entry) {
-        return entry.filename().string().rfind("sub-", 0) == 0 && !fs::is_directory(entry);
+  if (folder.filename() == "anat" || std::ranges::any_of(entries, [](const fs::path& entry) {
+        return entry.filename().string().starts_with("sub-") && !fs::is_directory(entry);
       })) {
     return inAnatFolder(folder);
   }

@@ -285,8 +285,8 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
                             const Monitor& monitor) {
   if (labels.grid.dimension() != 3) {
     throw InvalidInput(
-        "labels: one slice; a surface needs a volume (explica thickness gives a slice's "
-        "inner, middle and outer contours)");
+        "labels: one slice; a surface needs a volume (explica thickness gives a slice's inner, "
+        "middle and outer contours)");
   }
   const Histogram histogram = histogramOf(labels);
   TissueMasks masks;

@@ -133,11 +133,10 @@ void describeShape(Results& t, const SurfaceSummary& s) {
 void describeThickness(Results& t, const SurfaceSummary& s, const CorticalSurfaces& made) {
   const bool known = s.thickness.has_value();
   const ThicknessMeans means = s.thickness.value_or(ThicknessMeans{});
-  t.number(
-       "thickness_mean", "Mean thickness", "mm",
-       "Over the area of the tissue's middle surface, whatever the number of faces. The mean over "
-       "the tissue's voxels is greater: a thick column holds more voxels.",
-       where(known, means.mean))
+  t.number("thickness_mean", "Mean thickness", "mm",
+           "Over the area of the tissue's middle surface, whatever the number of faces. The mean "
+           "over the tissue's voxels is greater: a thick column holds more voxels.",
+           where(known, means.mean))
       .inHead()
       .compared();
   t.number("thickness_sd", "Standard deviation of the thickness", "mm", "Over the same area.",

@@ -161,8 +161,8 @@ std::string rangeText(const Reference& reference) {
 
 std::string referenceTable(const Beat& beat) {
   std::string text =
-      "quantity\tunit\there\twomen_mean\twomen_sd\twomen_z\tmen_mean\tmen_sd\tmen_z\t"
-      "papillary_muscles\tpeople\tsource\n";
+      "quantity\tunit\there\twomen_mean\twomen_sd\twomen_z\tmen_mean\tmen_sd\tmen_z\tpapillary_"
+      "muscles\tpeople\tsource\n";
   for (const Reference& r : references()) {
     const double here = valueOf(beat, r.quantity);
     text += r.name + '\t' + r.unit + '\t' + cellText(here, "%.3f");

@@ -24,8 +24,8 @@ void describeVolumes(Results& t, const Frame& ed, const Frame& es, double ejecti
   const auto later = [&](double value) { return beats ? known(value) : std::nullopt; };
   t.number(
        "cavity_volume_ed_ml", "Cavity at end-diastole", "ml",
-       "Voxels of the left ventricle's cavity in the frame where they are most; healthy women "
-       "135 \u00b1 26, men 160 \u00b1 29 (Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775).",
+       "Voxels of the left ventricle's cavity in the frame where they are most; healthy women 135 "
+       "\u00b1 26, men 160 \u00b1 29 (Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775).",
        known(ed.cavity))
       .inHead();
   t.number("cavity_volume_es_ml", "Cavity at end-systole", "ml",

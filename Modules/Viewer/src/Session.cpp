@@ -227,8 +227,8 @@ const Preview& Session::choose(const Choice& choice) {
     s.preview.visibility = energy.value(s.surface.positions);
     if (!(s.preview.visibility > 0)) {
       s.preview.problem =
-          "the region's average visibility is not positive: change the viewpoint, the "
-          "centre or the radius";
+          "the region's average visibility is not positive: change the viewpoint, the centre or "
+          "the radius";
     }
   } catch (const InvalidInput& error) {
     s.preview.problem = error.what();

@@ -63,7 +63,7 @@ AverageVisibility::AverageVisibility(const Faces& faces, std::vector<std::int32_
       throw InvalidInput("region: face " + std::to_string(regionFaces_[i]) +
                          " does not exist; the surface has " + std::to_string(faces.rows()));
     }
-    faces_.row(static_cast<Eigen::Index>(i)) = faces.row(regionFaces_[i]);
+    faces_.row(i) = faces.row(regionFaces_[i]);
   }
 }
 
@@ -76,7 +76,7 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
     const Point b = positions.row(faces_(i, 1)).transpose();
     const Point c = positions.row(faces_(i, 2)).transpose();
     fluxes[i] = meanFlux(a, b, c, viewpoints_, options_.farRatio);
-    areas[static_cast<Eigen::Index>(i)] = (b - a).cross(c - a).norm() / 2;
+    areas[i] = (b - a).cross(c - a).norm() / 2;
   });
 
   VisibilityValue result;
@@ -97,7 +97,7 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
     const std::array<Point, 3> corner = {positions.row(faces_(i, 0)).transpose(),
                                          positions.row(faces_(i, 1)).transpose(),
                                          positions.row(faces_(i, 2)).transpose()};
-    const double area = areas[static_cast<Eigen::Index>(i)];
+    const double area = areas[i];
     Vector normal = Vector::Zero();
     if (area > 0) normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (2 * area);
     for (int k = 0; k < 3; ++k) {

@@ -155,7 +155,7 @@ TriangleMesh withWhatMayHide(const TriangleMesh& mesh, const std::vector<std::in
   }
   TriangleMesh part{mesh.positions, Faces(static_cast<Eigen::Index>(chosen.size()), 3)};
   for (std::size_t n = 0; n < chosen.size(); ++n) {
-    part.faces.row(static_cast<Eigen::Index>(n)) = mesh.faces.row(chosen[n]);
+    part.faces.row(n) = mesh.faces.row(chosen[n]);
   }
   return part;
 }
@@ -225,9 +225,8 @@ double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& face
   const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision);
   const auto count = static_cast<Eigen::Index>(faces.size());
   Eigen::VectorXd seen(count);
-  parallelFor(faces.size(), kGrain, [&](std::size_t i) {
-    seen[static_cast<Eigen::Index>(i)] = rays.of(static_cast<Eigen::Index>(i)).seen;
-  });
+  parallelFor(faces.size(), kGrain,
+              [&](std::size_t i) { seen[i] = rays.of(static_cast<Eigen::Index>(i)).seen; });
   const Eigen::VectorXd areas = areasOf(part).head(count);
   return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }

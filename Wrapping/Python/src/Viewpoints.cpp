@@ -44,11 +44,10 @@ Viewpoints viewpointsOf(const py::array_t<double, py::array::c_style | py::array
 
 void bindViewpoints(py::module_& m) {
   using namespace py::literals;
-  py::class_<Viewpoints>(
-      m, "Viewpoints",
-      "From where a surface is looked at: points with weights that sum to 1.\n\n"
-      "Functions that take viewpoints take a point (3,) or an array (N, 3) of equal weights as "
-      "well.")
+  py::class_<Viewpoints>(m, "Viewpoints",
+                         "From where a surface is looked at: points with weights that sum to 1.\n\n"
+                         "Functions that take viewpoints take a point (3,) or an array (N, 3) of "
+                         "equal weights as well.")
       .def(py::init(&viewpointsOf), "points"_a, "weights"_a = py::none(),
            "points (3,) or (N, 3), RAS mm; weights (N,), positive, divided by their sum.")
       .def_property_readonly("points", &pointsOf, "(N, 3), RAS mm.")

@@ -38,8 +38,7 @@ std::vector<report::CloseUp> correctedPlaces(const StepFolder& surface, std::siz
         voxels, report::CloseUp{at, row["kind"] + " " + row["side"] + ", " + readable(voxels) +
                                         (voxels == 1 ? " voxel" : " voxels")});
   }
-  std::stable_sort(places.begin(), places.end(),
-                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::ranges::stable_sort(places, [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<report::CloseUp> largest;
   for (auto& [size, place] : places) {
     if (largest.size() < most) largest.push_back(std::move(place));
@@ -71,8 +70,7 @@ std::vector<report::CloseUp> unknownPlaces(const StepFolder& thickness, std::siz
   }
   std::vector<Cell> fullest;
   for (const auto& [key, cell] : cells) fullest.push_back(cell);
-  std::stable_sort(fullest.begin(), fullest.end(),
-                   [](const Cell& a, const Cell& b) { return a.count > b.count; });
+  std::ranges::stable_sort(fullest, std::ranges::greater{}, &Cell::count);
   std::vector<report::CloseUp> places;
   for (std::size_t n = 0; n < std::min(most, fullest.size()); ++n) {
     places.push_back({known.grid.toWorld(fullest[n].sum / fullest[n].count),
@@ -104,13 +102,13 @@ std::vector<report::CloseUp> crossingPlaces(const std::vector<CrossingPair>& pai
   };
   std::vector<Group> groups;
   for (const CrossingPair& pair : pairs) {
-    auto near = std::find_if(groups.begin(), groups.end(), [&](const Group& group) {
+    auto near = std::ranges::find_if(groups, [&](const Group& group) {
       return (group.first->place - pair.place).norm() < kOnePlace;
     });
     if (near == groups.end()) near = groups.insert(groups.end(), {&pair, 0});
     ++near->count;
   }
-  std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
+  std::ranges::stable_sort(groups, [](const Group& a, const Group& b) {
     return std::pair(a.first->inRegion, a.count) > std::pair(b.first->inRegion, b.count);
   });
   std::vector<report::CloseUp> places;

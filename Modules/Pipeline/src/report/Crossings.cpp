@@ -15,7 +15,7 @@ namespace {
 /// frame, than that of the list.
 bool liesOn(const TriangleMesh& mesh, const CrossingPair& pair) {
   constexpr double kRounding = 1e-3;  // mm; the list has four decimals
-  return std::all_of(pair.faces.begin(), pair.faces.end(), [&](std::int32_t f) {
+  return std::ranges::all_of(pair.faces, [&](std::int32_t f) {
     if (f >= mesh.faceCount()) return false;
     Point low = mesh.corner(f, 0), high = low;
     for (int c = 1; c < 3; ++c) {
@@ -43,8 +43,8 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
   const std::vector<CrossingPair> pairs = crossingPairs(step);
   const auto source = inputOf(step, "SURFACE");
   if (pairs.empty() || !source || !std::filesystem::exists(*source)) return;
-  const bool shown = std::any_of(mosaics.begin(), mosaics.end(),
-                                 [](const auto& mosaic) { return mosaic.id == kCrossingPlace; });
+  const bool shown =
+      std::ranges::any_of(mosaics, [](const auto& mosaic) { return mosaic.id == kCrossingPlace; });
   if (shown) return;
   const TriangleMesh mesh = io::readSurface(*source).mesh;
   std::vector<std::int32_t> faces;
@@ -52,7 +52,7 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
     if (!liesOn(mesh, pair)) return;
     faces.insert(faces.end(), pair.faces.begin(), pair.faces.end());
   }
-  std::sort(faces.begin(), faces.end());
+  std::ranges::sort(faces);
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
   const TriangleMesh crossing = geometry::extractFaces(mesh, faces).mesh;
   report::MosaicOptions close{.tileHeight = 170, .convention = options.convention};

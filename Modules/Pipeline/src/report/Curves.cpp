@@ -44,7 +44,7 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
   chart("Visibility", "average flux", {"visibility", "seen"}, false, false);
   chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true, false);
   for (const std::string& name : table.names) {
-    if (name.rfind("energy", 0) != 0) continue;
+    if (!name.starts_with("energy")) continue;
     const std::vector<double>& values = *table.column(name);
     bool any = false;
     for (const double v : values) any = any || v != 0;

@@ -55,7 +55,7 @@ void listOwnNumbers(const StepFolder& step, report::ReportFindings& findings) {
   constexpr std::size_t kMost = 12;  // rows
   for (const auto& [key, value] : step.summary.items()) {
     if (findings.rows.size() >= kMost) return;
-    if (!value.is_number() || key.rfind("seconds", 0) == 0 || key == "peak_memory_bytes") continue;
+    if (!value.is_number() || key.starts_with("seconds") || key == "peak_memory_bytes") continue;
     findings.rows.push_back({inWords(key), "", {readable(value)}});
   }
 }
@@ -66,11 +66,11 @@ void findNumbers(ResultFolder& results) {
   report::ReportFindings& findings = results.content().findings;
   std::vector<std::string> sides;
   for (const StepFolder& step : results.steps()) {
-    if (!step.side().empty() && std::find(sides.begin(), sides.end(), step.side()) == sides.end()) {
+    if (!step.side().empty() && std::ranges::find(sides, step.side()) == sides.end()) {
       sides.push_back(step.side());
     }
   }
-  std::sort(sides.begin(), sides.end());
+  std::ranges::sort(sides);
   if (sides.size() < 2) sides = {""};
   findings.columns = sides;
   listDescribed(results, sides, findings);

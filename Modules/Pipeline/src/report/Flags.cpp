@@ -83,7 +83,7 @@ std::vector<ReportFlag> ownFlags(const StepFolder& step) {
     if (why.empty() && flag.contains("value")) why = readable(flag["value"]);
     const bool accepted = flag.value("accepted", false);
     std::string name = inWords(flag.value("name", "implausible"));
-    std::replace(name.begin(), name.end(), '-', ' ');
+    std::ranges::replace(name, '-', ' ');
     flags.push_back({accepted ? FlagLevel::Notice : FlagLevel::Bad, name + sideWord(step) + ":",
                      why + (accepted ? " (accepted)" : ""), kTissuePlace});
   }
@@ -177,13 +177,13 @@ void dropIdleLinks(report::ReportContent& content) {
 /// Of flags that say the same the worst is kept: a warning may be a flag of the summary, too.
 void dropRepeated(std::vector<ReportFlag>& flags) {
   const auto repeated = [&flags](const ReportFlag& flag) {
-    return std::any_of(flags.begin(), flags.end(), [&](const ReportFlag& other) {
+    return std::ranges::any_of(flags, [&](const ReportFlag& other) {
       return other.level > flag.level && other.why == flag.why;
     });
   };
   std::vector<ReportFlag> kept;
-  std::copy_if(flags.begin(), flags.end(), std::back_inserter(kept),
-               [&](const ReportFlag& flag) { return !repeated(flag); });
+  std::ranges::copy_if(flags, std::back_inserter(kept),
+                       [&](const ReportFlag& flag) { return !repeated(flag); });
   flags = std::move(kept);
 }
 
@@ -215,7 +215,7 @@ void flagSteps(ResultFolder& results) {
   results.attempt("Comparison of files", [&] { judgeFiles(results); });
   dropIdleLinks(content);
   dropRepeated(content.flags);
-  std::stable_sort(content.flags.begin(), content.flags.end(), [](const auto& a, const auto& b) {
+  std::ranges::stable_sort(content.flags, [](const auto& a, const auto& b) {
     return static_cast<int>(a.level) > static_cast<int>(b.level);
   });
 }

@@ -52,9 +52,9 @@ std::optional<FlatPatch> readPatch(const StepFolder& step) {
     patch.reference = std::move(surface.mesh);
   }
   const Eigen::Index count = patch.reference.vertexCount();
-  const bool fits = patch.flat.vertexCount() == static_cast<Eigen::Index>(patch.vertices.size()) &&
-                    std::all_of(patch.vertices.begin(), patch.vertices.end(),
-                                [&](std::int32_t v) { return v >= 0 && v < count; });
+  const bool fits =
+      patch.flat.vertexCount() == static_cast<Eigen::Index>(patch.vertices.size()) &&
+      std::ranges::all_of(patch.vertices, [&](std::int32_t v) { return v >= 0 && v < count; });
   if (!fits || (patch.unfolded && patch.unfolded->vertexCount() != count)) return {};
   return patch;
 }
@@ -74,7 +74,7 @@ Vector sightOf(const FlatPatch& patch) {
 Eigen::VectorXd onPatch(const FlatPatch& patch, const Eigen::VectorXd& whole) {
   Eigen::VectorXd part(static_cast<Eigen::Index>(patch.vertices.size()));
   for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
-    part[static_cast<Eigen::Index>(n)] = whole[patch.vertices[n]];
+    part[n] = whole[patch.vertices[n]];
   }
   return part;
 }
@@ -104,8 +104,8 @@ std::vector<GivenMap> mapsOf(ResultFolder& results, const StepFolder& step,
   for (const fs::path& file : inputsOf(step, "map")) files.push_back(file.string());
   std::vector<GivenMap> maps = readGivenMaps(results, files);
   for (const GivenMap& map : given) {
-    const bool known = std::any_of(maps.begin(), maps.end(),
-                                   [&](const GivenMap& m) { return m.name == map.name; });
+    const bool known =
+        std::ranges::any_of(maps, [&](const GivenMap& m) { return m.name == map.name; });
     if (!known) maps.push_back(map);
   }
   return maps;
@@ -184,7 +184,7 @@ void chartDistortion(ResultFolder& results, const StepFolder& step) {
   for (const io::VertexMap& map : io::readVertexMaps(step.folder / "distortion.shape.gii")) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(vertices.size()));
     for (std::size_t n = 0; n < vertices.size(); ++n) {
-      values[static_cast<Eigen::Index>(n)] = map.values[vertices[n]];
+      values[n] = map.values[vertices[n]];
     }
     const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
     results.content().charts.push_back(
@@ -225,7 +225,7 @@ void playFrames(ResultFolder& results, const StepFolder& step) {
   constexpr double kFarAbove = 1e5;  // mm
   evolution.viewpoint = Point(0, 0, kFarAbove);
   for (std::int32_t v : evolution.mesh.faces.reshaped()) evolution.region.push_back(v);
-  std::sort(evolution.region.begin(), evolution.region.end());
+  std::ranges::sort(evolution.region);
   evolution.region.erase(std::unique(evolution.region.begin(), evolution.region.end()),
                          evolution.region.end());
   evolution.title = "the way to the flat map";

@@ -101,8 +101,8 @@ report::ReportStep reportStep(const StepFolder& step) {
 
 /// The step as its record tells it, or as the run noted where there is no record of its success.
 report::ReportStep reportStep(const StepNote& note, const std::vector<StepFolder>& steps) {
-  const auto found = std::find_if(steps.begin(), steps.end(),
-                                  [&](const StepFolder& s) { return s.name == note.name; });
+  const auto found =
+      std::ranges::find_if(steps, [&](const StepFolder& s) { return s.name == note.name; });
   if (found != steps.end() && note.state != report::StepState::Failed) return reportStep(*found);
   // Without a record a step that ended well is missing.
   const bool lost = note.state == report::StepState::Done;

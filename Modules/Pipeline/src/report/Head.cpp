@@ -23,7 +23,7 @@ std::string inputsOf(const ResultFolder& results) {
     for (const Json& input : execution.value("inputs", Json::array())) {
       if (input.contains("parent_record")) continue;
       const std::string name = endOf(input.value("given", ""));
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     }
   }
   std::string words;

@@ -67,12 +67,11 @@ void showLayers(ResultFolder& results, const StepFolder& step, const FolderRepor
   const Volume<Label> layers = layersOf(step);
   report::MosaicOptions mosaic{.perRow = options.slices, .convention = options.convention};
   const std::string side = step.side().empty() ? "" : ", " + step.side();
-  results.content().mosaics.push_back(
-      {kLayerPlace, (written ? "Layers" : "Depth") + side,
-       written ? "Each layer in its colour, the innermost orange."
-               : "Five shells of equal depth from the inner to the outer boundary, the innermost "
-                 "orange.",
-       report::makeMosaic(layers, mosaic)});
+  results.content().mosaics.push_back({kLayerPlace, (written ? "Layers" : "Depth") + side,
+                                       written ? "Each layer in its colour, the innermost orange."
+                                               : "Five shells of equal depth from the inner to the "
+                                                 "outer boundary, the innermost orange.",
+                                       report::makeMosaic(layers, mosaic)});
   if (written) chartLayers(results, step, layers);
 }
 

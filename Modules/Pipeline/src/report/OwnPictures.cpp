@@ -39,8 +39,8 @@ constexpr Known kKnown[] = {
 
 report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {
   const std::string stem = file.stem().string();
-  const auto known = std::find_if(std::begin(kKnown), std::end(kKnown),
-                                  [&](const Known& one) { return stem == one.stem; });
+  const auto known =
+      std::ranges::find_if(kKnown, [&](const Known& one) { return stem == one.stem; });
   const bool isKnown = known != std::end(kKnown);
   return {"",
           isKnown ? known->title : inWords(stem),

@@ -104,8 +104,8 @@ void tabulate(ResultFolder& results, const VolumeProfiles& profiles) {
 }
 
 void show(ResultFolder& results, const VolumeProfiles& profiles) {
-  const bool several = std::any_of(profiles.regions.begin(), profiles.regions.end(),
-                                   [](const DepthProfile& p) { return p.depths.size() > 1; });
+  const bool several = std::ranges::any_of(
+      profiles.regions, [](const DepthProfile& p) { return p.depths.size() > 1; });
   if (several) chartProfiles(results, profiles);
   chartCourse(results, profiles);
   if (!several || profiles.regions.size() > 1) tabulate(results, profiles);

@@ -64,8 +64,7 @@ Eigen::VectorXd valuesOf(const std::vector<ThicknessFile>& files) {
   std::vector<double> values;
   for (const ThicknessFile& one : files) {
     const io::VertexMap map = io::readVertexMaps(one.file).front();
-    std::copy_if(map.values.begin(), map.values.end(), std::back_inserter(values),
-                 [](double t) { return t > 0; });
+    std::ranges::copy_if(map.values, std::back_inserter(values), [](double t) { return t > 0; });
   }
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }

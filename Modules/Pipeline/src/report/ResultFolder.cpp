@@ -34,8 +34,8 @@ std::string StepFolder::side() const {
   if (said.empty() && options.contains("hemisphere") && options["hemisphere"].is_string()) {
     said = options["hemisphere"].get<std::string>();
   }
-  const bool left = said.rfind("CortexLeft", 0) == 0 || said == "L" || said == "left";
-  const bool right = said.rfind("CortexRight", 0) == 0 || said == "R" || said == "right";
+  const bool left = said.starts_with("CortexLeft") || said == "L" || said == "left";
+  const bool right = said.starts_with("CortexRight") || said == "R" || said == "right";
   if (left != right) return left ? "left" : "right";
   // A run on both sides names the folders of its steps by side.
   const std::string ending = name.size() > 2 ? name.substr(name.size() - 2) : "";
@@ -59,10 +59,9 @@ ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
   if (steps_.empty() && notes_.empty()) {
     const fs::path record = folder / provenance::kRecordName;
     if (fs::exists(record)) static_cast<void>(provenance::readRecord(record));  // why it cannot be
-    throw InvalidInput(
-        folder.string() +
-        ": no command has written it (it holds no provenance.json); give the --out folder of "
-        "a command or run");
+    throw InvalidInput(folder.string() +
+                       ": no command has written it (it holds no provenance.json); give the --out "
+                       "folder of a command or run");
   }
 }
 

@@ -69,7 +69,7 @@ io::VertexMap meanOf(const std::vector<io::VertexMap>& maps) {
 
 /// Of the maps of depths the first, middle and last; of frames their mean; of others all.
 std::vector<io::VertexMap> fewOf(std::vector<io::VertexMap> maps) {
-  if (maps.size() > 1 && maps.front().name.rfind("frame", 0) == 0) return {meanOf(maps)};
+  if (maps.size() > 1 && maps.front().name.starts_with("frame")) return {meanOf(maps)};
   if (maps.size() <= 3) return maps;
   std::vector<io::VertexMap> few;
   for (const std::size_t n : {std::size_t{0}, (maps.size() - 1) / 2, maps.size() - 1}) {
@@ -83,8 +83,8 @@ void showMaps(ResultFolder& results, const Middle& middle, const fs::path& file,
   const auto maps = fewOf(io::readVertexMaps(file, middle.mesh.vertexCount()));
   std::vector<double> pooled;
   for (const io::VertexMap& map : maps) {
-    std::copy_if(map.values.begin(), map.values.end(), std::back_inserter(pooled),
-                 [](double v) { return std::isfinite(v); });
+    std::ranges::copy_if(map.values, std::back_inserter(pooled),
+                         [](double v) { return std::isfinite(v); });
   }
   report::ReportViews views;
   views.id = kSampledPlace;
@@ -137,7 +137,7 @@ std::vector<std::pair<fs::path, std::string>> mapFiles(const StepFolder& step) {
     }
   }
   for (auto& [name, depths] : series) {
-    std::sort(depths.begin(), depths.end());
+    std::ranges::sort(depths);
     const auto& [depth, file] = depths[depths.size() / 2];
     files.emplace_back(file, name + ", depth " + readable(depth));
   }

@@ -88,8 +88,8 @@ report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, cons
                                 const std::string& unit) {
   std::vector<double> pooled;
   for (const Eigen::VectorXd& one : values) {
-    std::copy_if(one.begin(), one.end(), std::back_inserter(pooled),
-                 [](double v) { return std::isfinite(v); });
+    std::ranges::copy_if(one, std::back_inserter(pooled),
+                         [](double v) { return std::isfinite(v); });
   }
   const Eigen::VectorXd pool =
       Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
@@ -195,9 +195,8 @@ report::Evolution brainOf(ResultFolder& results, const Hemisphere& h) {
   }
   shapes.push_back({"pial", h.pial.positions});
   const std::string opened = openedShape(results.beside(*h.step, "unfold"));
-  auto own = std::find_if(shapes.begin(), shapes.end(), [&](const report::EvolutionShape& shape) {
-    return shape.name == opened;
-  });
+  auto own = std::ranges::find_if(
+      shapes, [&](const report::EvolutionShape& shape) { return shape.name == opened; });
   if (own == shapes.end()) own = shapes.begin();
   evolution.mesh = {std::exchange(own->positions, {}), h.white.faces};
   shapes.push_back({"inflated", maps::inflated(h.white).positions});
@@ -300,8 +299,8 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
       {kOutlinePlace,
        "First of " + std::to_string(places.size()) + " places to judge",
        "Right: the lines keep to the borders within the ring, too. Wrong: a bridge between two "
-       "gyri, a hole, a cut through white matter. Then: step through all places in the slices "
-       "and rate them.",
+       "gyri, a hole, a cut through white matter. Then: step through all places in the slices and "
+       "rate them.",
        {std::move(doubted.rows[0][0]), std::move(doubted.rows[1][0])},
        std::move(doubted.outlines)});
 }
@@ -343,8 +342,7 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                    {}});
   }
   if (all.empty()) return;
-  std::sort(all.begin(), all.end(),
-            [](const Hemisphere& a, const Hemisphere& b) { return a.side < b.side; });
+  std::ranges::sort(all, {}, &Hemisphere::side);
   for (Hemisphere& h : all) h.scene.emplace(h.pial);
   for (const Hemisphere& h : all) results.content().evolutions.push_back(brainOf(results, h));
   results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });

@@ -66,11 +66,11 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
           "equally bright everywhere.",
           {"the image as it came", "field divided out"},
           [](float value, float bias) { return bias > 0 ? value / bias : value; });
-  compare("brain_mask.nii.gz", "Brain mask",
-          "The image as it came, and what was taken for brain: no cortex may be lost, no skull "
-          "left.",
-          {"the whole image", "the brain"},
-          [](float value, float inside) { return inside > 0 ? value : 0.0F; });
+  compare(
+      "brain_mask.nii.gz", "Brain mask",
+      "The image as it came, and what was taken for brain: no cortex may be lost, no skull left.",
+      {"the whole image", "the brain"},
+      [](float value, float inside) { return inside > 0 ? value : 0.0F; });
 }
 
 }  // namespace

@@ -130,7 +130,7 @@ void addOwnMaps(const StepFolder& step, const Unfolded& unfolded, report::Evolut
 /// The patch opens on its hemisphere, where the page shows that; else it is shown by itself.
 void joinTheBrain(std::vector<report::Evolution>& shown, const std::string& side,
                   report::Evolution patch) {
-  const auto brain = std::find_if(shown.begin(), shown.end(), [&](const report::Evolution& one) {
+  const auto brain = std::ranges::find_if(shown, [&](const report::Evolution& one) {
     return !one.shapes.empty() && one.title == side && one.frames.empty() && !patch.detached &&
            one.mesh.faces.rows() == patch.mesh.faces.rows() &&
            one.mesh.vertexCount() == patch.mesh.vertexCount();
@@ -145,9 +145,8 @@ void joinTheBrain(std::vector<report::Evolution>& shown, const std::string& side
   brain->region = std::move(patch.region);
   brain->viewpoint = patch.viewpoint;
   for (report::EvolutionMap& map : patch.maps) {
-    const bool known = std::any_of(brain->maps.begin(), brain->maps.end(), [&](const auto& other) {
-      return other.scale.title == map.scale.title;
-    });
+    const bool known = std::ranges::any_of(
+        brain->maps, [&](const auto& other) { return other.scale.title == map.scale.title; });
     if (!known) brain->maps.push_back(std::move(map));
   }
 }
@@ -196,7 +195,7 @@ PatchPaint paintOf(const Unfolded& unfolded, const GivenMap& map) {
   given.paint.values = map.values;
   Eigen::VectorXd onPatch(static_cast<Eigen::Index>(unfolded.region.size()));
   for (std::size_t n = 0; n < unfolded.region.size(); ++n) {
-    onPatch[static_cast<Eigen::Index>(n)] = map.values[unfolded.region[n]];
+    onPatch[n] = map.values[unfolded.region[n]];
   }
   given.paint.scale = report::scaleFor(onPatch, map.name, map.unit);
   return given;

@@ -286,7 +286,7 @@ void MainWindow::takeRegion() {
   choice.markedOptions.clear();
   showField(panels_.regionKey, source >= 0);
   if (source >= 0) {
-    const WindowLabels& labels = labels_[static_cast<std::size_t>(source)];
+    const WindowLabels& labels = labels_[source];
     if (panels_.regionKey->property("source") != source) {
       filling_ = true;
       panels_.regionKey->clear();
@@ -310,7 +310,7 @@ void MainWindow::takeAbove() {
         "Choose one of the opened maps first; the window's own cannot be used.");
     return;
   }
-  const WindowMap& values = maps_[static_cast<std::size_t>(map)];
+  const WindowMap& values = maps_[map];
   if (values.file.empty()) {
     statusBar()->showMessage(
         "explica unfold takes the first map of a file: write this one into a file of its own.");

@@ -188,9 +188,9 @@ void MainWindow::paint() {
   const auto mapCount = static_cast<int>(maps_.size());
   shownValues_.resize(0);
   if (chosen >= kOwnMaps + mapCount) {
-    paintLabels(labels_[static_cast<std::size_t>(chosen - kOwnMaps - mapCount)]);
+    paintLabels(labels_[chosen - kOwnMaps - mapCount]);
   } else if (chosen >= kOwnMaps) {
-    paintValues(maps_[static_cast<std::size_t>(chosen - kOwnMaps)]);
+    paintValues(maps_[chosen - kOwnMaps]);
   } else if (chosen > kRegion) {
     if (const auto map = ownMap(chosen)) paintValues(*map);
   } else {
@@ -238,7 +238,7 @@ std::string MainWindow::valueAt(std::int32_t vertex) const {
   const int chosen = panels_.map->currentIndex();
   const int label = chosen - kOwnMaps - static_cast<int>(maps_.size());
   if (label >= 0) {
-    const WindowLabels& labels = labels_[static_cast<std::size_t>(label)];
+    const WindowLabels& labels = labels_[label];
     for (const auto& [key, name] : labels.names) {
       if (key == labels.keys[vertex]) return name;
     }

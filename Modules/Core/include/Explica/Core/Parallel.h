@@ -26,6 +26,12 @@ void parallelFor(std::size_t count, std::size_t grain, const Body& body) {
   });
 }
 
+/// The same by blocks for bodies of a nanosecond to a microsecond.
+template <class Body>
+void parallelFor(std::size_t count, const Body& body) {
+  parallelFor(count, 1024, body);
+}
+
 /// Sums map(begin, end) over blocks; partial sums are added in block order, so the result does not
 /// depend on the number of threads.  T needs operator+= .
 template <class T, class Map>

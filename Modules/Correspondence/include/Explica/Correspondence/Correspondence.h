@@ -38,12 +38,11 @@ struct CorrespondenceOptions {
 template <class Visitor>
 void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "how boundary points and lengths are found"}, options.method);
-  visit(
-      Field{"lambda", "mm",
-            "hybrid, appendix-a: boundary points of neighbours nearer than this are interpolated, "
-            "others followed; 0 follows all (default: twice the finest voxel size, 0 in tissue a "
-            "few voxels thick)"},
-      options.lambda);
+  visit(Field{"lambda", "mm",
+              "hybrid, appendix-a: boundary points of neighbours nearer than this are "
+              "interpolated, others followed; 0 follows all (default: twice the finest voxel size, "
+              "0 in tissue a few voxels thick)"},
+        options.lambda);
 }
 
 /// Boundary points and lengths of every tissue voxel.

@@ -8,7 +8,6 @@
 #include "Explica/Core/Termination.h"
 #include "Explica/Unfolding/Unfold.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,12 +28,11 @@ struct InflateOptions {
 
 template <class Visitor>
 void describe(InflateOptions& options, Visitor&& visit) {
-  visit(
-      Field{"target-seen", "",
-            "share of the view from all around that is to arrive: stop once the global visibility "
-            "reaches it; so much of the area, and more, is then seen from somewhere",
-            kAboveZero, 1},
-      options.targetSeen);
+  visit(Field{"target-seen", "",
+              "share of the view from all around that is to arrive: stop once the global "
+              "visibility reaches it; so much of the area, and more, is then seen from somewhere",
+              kAboveZero, 1},
+        options.targetSeen);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,
               kMostFrames},
         options.frames);

@@ -88,11 +88,10 @@ void describe(PlanOptions& options, Visitor&& visit) {
   visit(Field{"given-surfaces", "", "what to do with white and pial surfaces found in the input"},
         options.given);
   visit(Field{"steps", "", "steps to do (default: all that the input allows)"}, options.steps);
-  visit(
-      Field{"template", "",
-            "cortex that hemispheres are registered to, and whose regions they get; see register; "
-            "none: neither"},
-      options.cortexTemplate);
+  visit(Field{"template", "",
+              "cortex that hemispheres are registered to, and whose regions they get; see "
+              "register; none: neither"},
+        options.cortexTemplate);
 }
 
 /// One command of a run.

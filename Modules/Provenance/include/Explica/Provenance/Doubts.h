@@ -43,9 +43,8 @@ inline constexpr std::array kDoubts = {
           "files that differ from what the record beside them says was written"},
     Doubt{kInputsContradict, "Inputs contradict each other",
           "pairs of files of two hemispheres or meshes, accepted by the user"},
-    Doubt{
-        kWhiteUnlikeTemplate, "Tissue unlike the template's",
-        "voxels of pieces of at least 0.5 ml that are deep white matter in the template and other "
-        "tissue in the image, which was believed"}};
+    Doubt{kWhiteUnlikeTemplate, "Tissue unlike the template's",
+          "voxels of pieces of at least 0.5 ml that are deep white matter in the template and "
+          "other tissue in the image, which was believed"}};
 
 }  // namespace explica::provenance

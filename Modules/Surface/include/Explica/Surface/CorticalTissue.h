@@ -173,8 +173,8 @@ void describe(TissueOptions& options, Visitor&& visit) {
   visit(Field{"white-label", "", "labels of white matter (default: the preset's)"}, options.white);
   visit(Field{"grey-label", "", "labels of grey matter (default: the preset's)"}, options.grey);
   visit(Field{"fill", "",
-              "labels joined to white matter, such as deep structures and ventricles "
-              "(default: the preset's)"},
+              "labels joined to white matter, such as deep structures and ventricles (default: the "
+              "preset's)"},
         options.fill);
   visit(
       Field{"insulated", "", "labels that are neither inside nor outside (default: the preset's)"},
@@ -183,8 +183,8 @@ void describe(TissueOptions& options, Visitor&& visit) {
         options.hemisphere);
   visit(Field{"no-fill", "", "join nothing to white matter"}, options.noFill);
   visit(Field{"close-edges", "",
-              "close the surface where tissue meets the edge of the field of "
-              "view, instead of refusing"},
+              "close the surface where tissue meets the edge of the field of view, instead of "
+              "refusing"},
         options.closeEdges);
 }
 

@@ -47,11 +47,10 @@ struct WallOptions {
 
 template <class Visitor>
 void describe(WallOptions& options, Visitor&& visit) {
-  visit(
-      Field{"measure", "",
-            "thickness slice by slice, corrected for how obliquely the slice cuts the wall, or in "
-            "space (auto: by slice where slices are three times as thick as pixels)"},
-      options.method);
+  visit(Field{"measure", "",
+              "thickness slice by slice, corrected for how obliquely the slice cuts the wall, or "
+              "in space (auto: by slice where slices are three times as thick as pixels)"},
+        options.method);
 }
 
 /// Thickness of a frame's wall, per tissue number of `annulus`.
