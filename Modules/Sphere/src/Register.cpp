@@ -20,45 +20,60 @@ namespace explica::sphere {
 namespace {
 
 constexpr int kCoarsestLevel = 3;       // 642 vertices, 8 degrees apart
+constexpr int kMeeting = 4;             // level after which maps of both directions go on as one's
 constexpr int kIterations = 30;         // of a level
 constexpr std::size_t kFewer = 4;       // times as many starts on a level as on the next finer
 constexpr double kTolerance = 1e-4;     // of the energy, of which most is what no map goes below
 constexpr double kBarrier = 1e-2;       // b of MapWeights: felt near the bound only
 constexpr double kMarginALevel = 0.05;  // of the bound, kept on coarser levels for the finer
-constexpr std::size_t kVerticesATask = 512;  // some 0.1 ms a task
 
 /// Squared differences of the moving maps at the vertices' places and the target's at the vertices,
-/// each with its share of the sphere.
+/// each with the mean of its shares of both spheres, so that of the inverse map it is the same.
 class FoldingEnergy final : public VertexEnergy {
  public:
   FoldingEnergy(const FoldingLevel& moving, const FoldingLevel& target)
       : moving_(moving),
         target_(target),
-        share_(geometry::vertexAreas(target.grid->mesh())),
-        near_(static_cast<std::size_t>(share_.size()), 0) {
+        faces_(target.grid->mesh().faces),
+        share_(geometry::faceAreas(target.grid->mesh())),
+        near_(static_cast<std::size_t>(target.grid->mesh().vertexCount()), 0) {
     share_ /= share_.sum();
   }
 
   [[nodiscard]] double value(const Positions& sphere) const override {
-    const auto count = static_cast<std::size_t>(sphere.rows());
-    return parallelSum(count, kVerticesATask, 0.0, [&](std::size_t begin, std::size_t end) {
-      double sum = 0;
-      for (std::size_t v = begin; v < end; ++v) sum += at(sphere, v).value;
-      return sum;
-    });
+    std::vector<double> values(static_cast<std::size_t>(sphere.rows()));
+    parallelFor(values.size(), [&](std::size_t v) { values[v] = at(sphere, v).value; });
+    double sum = 0;
+    for (Eigen::Index f = 0; f < faces_.rows(); ++f)
+      sum += bothShares(sphere, f) * meanOf(values, f);
+    return sum;
   }
 
+  /// The Hessian is that of Gauss and Newton at fixed shares.
   void add(const Positions& sphere, const std::vector<TangentFrame>& frames,
            geometry::FaceSystem& system) const override {
-    parallelFor(static_cast<std::size_t>(sphere.rows()), [&](std::size_t v) {
+    std::vector<double> values(static_cast<std::size_t>(sphere.rows()));
+    Eigen::VectorXd share = Eigen::VectorXd::Zero(sphere.rows());
+    for (Eigen::Index f = 0; f < faces_.rows(); ++f)
+      for (int k = 0; k < 3; ++k) share[faces_(f, k)] += bothShares(sphere, f) / 3;
+    parallelFor(values.size(), [&](std::size_t v) {
       const Terms terms = at(sphere, v);
       const auto vertex = static_cast<std::int32_t>(v);
+      values[v] = terms.value;
       for (std::size_t m = 0; m < 2; ++m) {
         const Eigen::Vector2d slope = frames[v].transpose() * terms.slope[m];
-        system.gradientAt(vertex) += 2 * terms.weight[m] * terms.residual[m] * slope;
-        system.diagonalAt(vertex) += 2 * terms.weight[m] * slope * slope.transpose();
+        const double weight = 2 * share[vertex] * terms.weight[m];
+        system.gradientAt(vertex) += weight * terms.residual[m] * slope;
+        system.diagonalAt(vertex) += weight * slope * slope.transpose();
       }
     });
+    for (Eigen::Index f = 0; f < faces_.rows(); ++f) {
+      for (int k = 0; k < 3; ++k) {
+        const Vector a = sphere.row(faces_(f, (k + 1) % 3)), b = sphere.row(faces_(f, (k + 2) % 3));
+        const std::int32_t v = faces_(f, k);
+        system.gradientAt(v) += meanOf(values, f) / (16 * kPi) * frames[v].transpose() * a.cross(b);
+      }
+    }
   }
 
  private:
@@ -67,6 +82,15 @@ class FoldingEnergy final : public VertexEnergy {
     std::array<double, 2> residual{}, weight{};
     std::array<Vector, 2> slope;
   };
+
+  /// Mean of a face's shares of the areas of the target's and of the moving unit sphere.
+  [[nodiscard]] double bothShares(const Positions& y, Eigen::Index f) const {
+    const Vector a = y.row(faces_(f, 0)), b = y.row(faces_(f, 1)), c = y.row(faces_(f, 2));
+    return (share_[f] + a.dot((b - a).cross(c - a)) / (8 * kPi)) / 2;
+  }
+  [[nodiscard]] double meanOf(const std::vector<double>& values, Eigen::Index f) const {
+    return (values[faces_(f, 0)] + values[faces_(f, 1)] + values[faces_(f, 2)]) / 3;
+  }
 
   /// A map that is linear on a face is s = (n . y) / (m . y) of directions y.
   [[nodiscard]] Terms at(const Positions& sphere, std::size_t v) const {
@@ -86,7 +110,7 @@ class FoldingEnergy final : public VertexEnergy {
       const double s = n.dot(y) / sum.dot(y);
       terms.slope[m] = (n - s * sum) / sum.dot(y);
       terms.residual[m] = s - target_.maps[m][vertex];
-      terms.weight[m] = share_[vertex] * target_.weights[m][vertex];
+      terms.weight[m] = target_.weights[m][vertex];
       terms.value += terms.weight[m] * terms.residual[m] * terms.residual[m];
     }
     return terms;
@@ -94,14 +118,15 @@ class FoldingEnergy final : public VertexEnergy {
 
   const FoldingLevel& moving_;
   const FoldingLevel& target_;
-  Eigen::VectorXd share_;
+  const Faces& faces_;
+  Eigen::VectorXd share_;                   ///< of each face
   mutable std::vector<std::int32_t> near_;  ///< where each vertex was last; its own only
 };
 
 /// Rest shapes of an icosphere's faces on the unit sphere, with a weight on their energy.
 SphereEnergy regularity(const TriangleMesh& grid, double smoothness, double maxAreal) {
   auto rest = restOnUnitSphere(flattening::intrinsicOf(grid));
-  return {grid.faces, std::move(rest), {1, maxAreal, kBarrier, smoothness}};
+  return {grid.faces, std::move(rest), {1, maxAreal, kBarrier, smoothness, true}};
 }
 
 /// The map on the next finer icosphere: new vertices amid the ends of their edges.
@@ -143,6 +168,53 @@ void keepBest(std::vector<Start>& starts, std::size_t count) {
   std::ranges::stable_sort(starts, {}, &Start::energy);
   starts.resize(count);
 }
+
+/// Maps between two pyramids on their way from coarse to fine.
+struct Direction {
+  const std::vector<FoldingLevel>& moving;
+  const std::vector<FoldingLevel>& target;
+  std::vector<Start> starts = {};
+
+  [[nodiscard]] const TriangleMesh& grid(int level) const { return target[level].grid->mesh(); }
+
+  /// Lowers all starts on a level and keeps those of least energy.
+  Termination lower(int level, const RegisterOptions& options, const Monitor& monitor) {
+    const double bound = options.maxAreal * (1 - kMarginALevel * (options.level - level));
+    const SphereEnergy energy = regularity(grid(level), options.smoothness, bound);
+    const FoldingEnergy folding(moving[level], target[level]);
+    SphereSolver solver(energy, grid(level).vertexCount(), &folding);
+    Termination termination = Termination::NotRun;
+    for (Start& start : starts) {
+      start.energy = solver.value(start.places);
+      if (!std::isfinite(start.energy)) continue;  // an inverse with a face turned over
+      const auto run = solver.lower(start.places, kIterations, kTolerance, monitor);
+      start.energy = run.energy;
+      start.iterations += run.iterations;
+      termination = run.termination;
+    }
+    keepBest(starts, level == options.level ? 1 : (starts.size() + kFewer - 1) / kFewer);
+    return termination;
+  }
+
+  void refine(int level) {
+    for (Start& start : starts) start.places = refined(grid(level), grid(level + 1), start.places);
+  }
+
+  /// The inverses of the other direction's maps go on beside the own ones.
+  void join(const Direction& other, int level) {
+    for (const Start& start : other.starts) {
+      const geometry::SphereLocator deformed(TriangleMesh{start.places, grid(level).faces});
+      Positions places(grid(level).vertexCount(), 3);
+      parallelFor(static_cast<std::size_t>(places.rows()), [&](std::size_t v) {
+        const auto place = deformed.locate(grid(level).positions.row(v).transpose());
+        Point sum = Point::Zero();
+        for (int k = 0; k < 3; ++k) sum += place.weights[k] * grid(level).corner(place.face, k);
+        places.row(v) = sum.normalized().transpose();
+      });
+      starts.push_back({std::move(places), kInfinity, start.iterations});
+    }
+  }
+};
 
 double correlation(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   const Eigen::ArrayXd x = a.array() - a.mean(), y = b.array() - b.mean();
@@ -202,7 +274,7 @@ SphereRegistration registerSphere(const FoldingSphere& moving, const FoldingSphe
   const auto movingMaps = foldingPyramid(moving, options.level);
   const auto targetMaps = foldingPyramid(target, options.level);
   SphereRegistration result;
-  std::vector<Start> starts;
+  Direction there{movingMaps, targetMaps}, back{targetMaps, movingMaps};
   const auto rotations = options.rotate ? searchRotations(movingMaps, targetMaps, monitor)
                                         : std::vector{result.rotation};
 
@@ -210,36 +282,29 @@ SphereRegistration registerSphere(const FoldingSphere& moving, const FoldingSphe
   const FoldingLevel& finest = targetMaps.back();
   result.before = correlationAt(moving, onMoving, finest, finest.grid->mesh().positions);
   int level = std::min(kCoarsestLevel, options.level);
-  const TriangleMesh* grid = &targetMaps[level].grid->mesh();
+  const int meeting = std::min(kMeeting, options.level - 1);
   for (const Eigen::Matrix3d& rotation : rotations) {
-    starts.push_back({grid->positions * rotation});  // y = R^T x
+    there.starts.push_back({there.grid(level).positions * rotation});  // y = R^T x
+    back.starts.push_back({back.grid(level).positions * rotation.transpose()});
   }
   for (;; ++level) {
     monitor.progress(0.2 + 0.7 * level / (options.level + 1),
-                     std::to_string(grid->vertexCount()) + " vertices");
-    const double bound = options.maxAreal * (1 - kMarginALevel * (options.level - level));
-    const SphereEnergy energy = regularity(*grid, options.smoothness, bound);
-    const FoldingEnergy folding(movingMaps[level], targetMaps[level]);
-    SphereSolver solver(energy, grid->vertexCount(), &folding);
-    for (Start& start : starts) {
-      const auto run = solver.lower(start.places, kIterations, kTolerance, monitor);
-      start.energy = solver.value(start.places);
-      start.iterations += run.iterations;
-      result.termination = run.termination;
-    }
-    keepBest(starts, level == options.level ? 1 : (starts.size() + kFewer - 1) / kFewer);
+                     std::to_string(there.grid(level).vertexCount()) + " vertices");
+    result.termination = there.lower(level, options, monitor);
+    if (level <= meeting) back.lower(level, options, monitor);
     if (level == options.level) break;
-    const TriangleMesh* finer = &targetMaps[level + 1].grid->mesh();
-    for (Start& start : starts) start.places = refined(*grid, *finer, start.places);
-    grid = finer;
+    there.refine(level);
+    if (level <= meeting) back.refine(level);
+    if (level == meeting) there.join(back, level + 1);
   }
   if (result.termination != Termination::Interrupted) result.termination = Termination::Finished;
-  const Positions& places = starts.front().places;
+  const TriangleMesh& grid = there.grid(level);
+  const Positions& places = there.starts.front().places;
   result.rotation =
-      Eigen::umeyama(places.transpose(), grid->positions.transpose(), false).topLeftCorner<3, 3>();
-  result.iterations = starts.front().iterations;
+      Eigen::umeyama(places.transpose(), grid.positions.transpose(), false).topLeftCorner<3, 3>();
+  result.iterations = there.starts.front().iterations;
   result.after = correlationAt(moving, onMoving, finest, places);
-  carry(moving, *grid, places, result);
+  carry(moving, grid, places, result);
   const geometry::SphereLocator onTarget(target.sphere);
   result.sulc = valuesAt(onTarget, target.sulc, result.positions);
   result.curvature = valuesAt(onTarget, target.curvature, result.positions);

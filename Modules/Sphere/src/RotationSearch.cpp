@@ -13,9 +13,8 @@
 namespace explica::sphere {
 namespace {
 
-constexpr int kRotations = 4000;  // some 14 degrees apart
-constexpr std::size_t kFollowed =
-    30;  // of them, best first, no two of them near: more only take time
+constexpr int kRotations = 4000;           // some 14 degrees apart
+constexpr std::size_t kFollowed = 14;      // of them, best first, no two of them near
 constexpr double kApart = 16 * kPi / 180;  // radians: a little more than between neighbours
 constexpr int kLevel = 2;                  // of the pyramids: 162 vertices, 16 degrees apart
 
@@ -24,13 +23,15 @@ struct Candidate {
   double cost = kInfinity;
 };
 
-/// Rotations spread evenly over all [Alexa2022, Algorithm 1].
-Eigen::Quaterniond spiralRotation(int n) {
+/// Rotations spread evenly over all [Alexa2022, Algorithm 1], and their inverses.
+Eigen::Quaterniond rotationOf(int number) {
+  const int n = number / 2;
   const double phi = std::sqrt(2.0), psi = 1.533751168755204288118041;
-  const double s = n + 0.5, t = s / kRotations, d = 2 * kPi * s;
+  const double s = n + 0.5, t = 2 * s / kRotations, d = 2 * kPi * s;
   const double r = std::sqrt(t), q = std::sqrt(1 - t);
-  return {r * std::sin(d / phi), r * std::cos(d / phi), q * std::sin(d / psi),
-          q * std::cos(d / psi)};
+  const Eigen::Quaterniond one(r * std::sin(d / phi), r * std::cos(d / phi), q * std::sin(d / psi),
+                               q * std::cos(d / psi));
+  return number % 2 == 0 ? one : one.conjugate();
 }
 
 /// Mean squared difference where the target's vertices come from the moving sphere's places.
@@ -74,8 +75,9 @@ std::vector<Eigen::Matrix3d> searchRotations(const std::vector<FoldingLevel>& mo
   monitor.progress(0, "rotation");
   std::vector<Candidate> candidates(kRotations);
   parallelFor(candidates.size(), 16, [&](std::size_t n) {
-    candidates[n].rotation = spiralRotation(static_cast<int>(n));
-    candidates[n].cost = costOf(moving[kLevel], target[kLevel], candidates[n].rotation);
+    const Eigen::Quaterniond rotation = rotationOf(static_cast<int>(n));
+    candidates[n] = {rotation, costOf(moving[kLevel], target[kLevel], rotation) +
+                                   costOf(target[kLevel], moving[kLevel], rotation.conjugate())};
   });
   std::ranges::stable_sort(candidates, {}, &Candidate::cost);
   std::vector<Eigen::Matrix3d> rotations;

@@ -50,6 +50,14 @@ SphereDensity sphereDensity(double s, double d, const MapWeights& weights) {
     psi.dD += weights.barrier * slope * inverse;
     psi.dDD += weights.barrier * (bend - slope) * inverse * inverse;
   }
+  if (weights.symmetric) {
+    const double share = (1 + d) / 2;
+    psi.dDD = share * psi.dDD + psi.dD;
+    psi.dSD = share * psi.dSD + psi.dS / 2;
+    psi.dD = share * psi.dD + psi.value / 2;
+    psi.dS *= share;
+    psi.value *= share;
+  }
   return psi;
 }
 

@@ -19,10 +19,10 @@ struct FoldingSphere {
 
 /// How spheres are brought together.
 struct RegisterOptions {
-  double smoothness = 5;  ///< a of registerSphere()
-  double maxAreal = 2;    ///< m of MapWeights
-  int level = 6;          ///< of the finest icosphere, 10 * 4^level + 2 vertices
-  bool rotate = true;     ///< start from rotations, too
+  double smoothness = 4.5;  ///< a of registerSphere()
+  double maxAreal = 2;      ///< m of MapWeights
+  int level = 6;            ///< of the finest icosphere, 10 * 4^level + 2 vertices
+  bool rotate = true;       ///< start from rotations, too
 };
 
 template <class Visitor>
@@ -64,10 +64,13 @@ struct SphereRegistration {
 ///
 ///     sum_i A_i sum_maps (s(y_i) - t(x_i))^2 / v(x_i)  +  a * energy of MapWeights
 ///
+/// A the mean of a place's shares of both spheres, so that the inverse map has the same energy,
 /// s and t the maps of both, each of mean 0 and variance 1, v the template's variance over its mean
 /// or 1; by Gauss-Newton steps on icospheres from coarse to fine, maps smoothed alike.  They start
 /// from the identity and from the rotations, among ones spread evenly over all [Alexa2022], after
-/// which the folds agree best; on each level those of least energy go on.  (The best rotation alone
+/// which the folds agree best; on each level those of least energy go on.  Coarse levels are
+/// searched from both sides, and the inverses of what is found from the other side go on beside
+/// the own maps, so that both directions come to rest in one place.  (The best rotation alone
 /// can be a fold off: how well folds agree is known only once they have moved.)  Faces keep
 /// their sides and areas change by less than `maxAreal` doublings there, so that the map is one to
 /// one.  The moving sphere's vertices follow by its inverse, linear on faces; the few faces that

@@ -25,6 +25,7 @@ struct MapWeights {
   double mostAreal = kInfinity;  ///< m > 0
   double barrier = 0;            ///< b >= 0
   double whole = 1;              ///< factor of the sum over faces
+  bool symmetric = false;        ///< (1 + d) / 2 times psi: of the inverse map it is the same
 };
 
 /// psi and its derivatives by S = |J|^2 and by d.
