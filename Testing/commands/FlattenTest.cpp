@@ -421,7 +421,7 @@ TEST_F(FunctionalImage, ComesOntoTheFlatMapThroughItsTransform) {
                "--to-volume", given("transforms/fullhead_matrices.xfm")});
   ASSERT_EQ(made.exitCode, 0) << made;
   EXPECT_NE(made.err.find("flat map: usable, one-to-one\n"), std::string::npos);
-  EXPECT_NE(made.err.find("Mean area error: 0."), std::string::npos) << made;
+  EXPECT_NE(made.err.find("Mean area error 0."), std::string::npos) << made;
   io::VolumeReadOptions withNaN;
   withNaN.allowNonFinite = true;
   const auto places = io::readVectors(folder_ / "flat/grid.nii.gz", withNaN).volume;
@@ -573,7 +573,7 @@ TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesO
   // Reading the surface and preparing it have a few checks, after which nothing is written.
   constexpr const char* kWithinTheSearch = "stopped while cuts were sought";
   CommandResult stopped;
-  for (long checks = 20; checks < 20000; checks *= 2) {
+  for (long checks = 20; checks < 20000; checks += checks / 8) {
     stopped = withWords({"--frames", "4"}, "a", stopAtCheck(checks));
     ASSERT_EQ(stopped.exitCode, 3) << stopped;
     if (stopped.err.find(kWithinTheSearch) != std::string::npos) break;

@@ -121,7 +121,7 @@ std::vector<std::string> Results::head() const {
     if (!result.isInHead || !measure) continue;
     const Result* start = find(result.start);
     const auto before = start ? measureOf(start->value) : std::nullopt;
-    lines.push_back(result.title + ": " + (before ? inWords(result, *before) + " -> " : "") +
+    lines.push_back(result.title + " " + (before ? inWords(result, *before) + " -> " : "") +
                     inWords(result, *measure));
   }
   return lines;

@@ -89,7 +89,7 @@ TEST(Results, TheHeadIsWhatIsKnownOfIt) {
   t.number("width", "Width", "mm", "", kNaN).inHead();
   t.change("seen", "Seen", "share", "", {0.5, 0.987}).inHead();
   t.count("cuts", "Cuts", "", 3).inHead();
-  EXPECT_EQ(t.head(), (std::vector<std::string>{"Seen: 50 % -> 98.7 %", "Cuts: 3"}));
+  EXPECT_EQ(t.head(), (std::vector<std::string>{"Seen 50 % -> 98.7 %", "Cuts 3"}));
 }
 
 TEST(Results, PartsMakeATable) {

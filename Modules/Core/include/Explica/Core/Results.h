@@ -126,7 +126,7 @@ class Results {
   void include(const Results& others);
   [[nodiscard]] auto begin() const { return all_.begin(); }
   [[nodiscard]] auto end() const { return all_.end(); }
-  /// "Average visibility: 0.45 -> 0.98" of each known result of the head.
+  /// "Average visibility 0.45 -> 0.98" of each known result of the head.
   [[nodiscard]] std::vector<std::string> head() const;
   /// The result of that key, or the one whose pattern it matches, or nullptr.
   [[nodiscard]] const Result* find(std::string_view key) const;

@@ -42,8 +42,8 @@ struct LabelMap {
 inline constexpr std::uintmax_t kMostShown = 200u << 20;
 
 /// Reads per-vertex values: GIFTI (.shape.gii, .func.gii and so on, any encoding, also .gz),
-/// FreeSurfer curv (old and new), MGH/MGZ with one value a vertex, point data of VTK files.  Where a
-/// file states no unit, its name may: `lh.thickness`, `..._thickness.shape.gii` are in mm.
+/// FreeSurfer curv (old and new), MGH/MGZ with one value a vertex, point data of VTK files.  Where
+/// a file states no unit, its name may: `lh.thickness`, `..._thickness.shape.gii` are in mm.
 ///
 /// @param vertexCount  demanded number of values a map, if given
 /// @throws IOError       missing, truncated or of no known format
