@@ -156,7 +156,8 @@ std::vector<Shown> readFiles(const FigureSettings& s) {
     loaded ? all.push_back(shownOf(*loaded, file)) : data.push_back(file);
   }
   if (all.empty()) {
-    throw InvalidInput("'" + s.files.front() + "': is no surface, and a figure needs one");
+    throw InvalidInput("'" + s.files.front() +
+                       "': is no surface; give the surface that it belongs to as well");
   }
   for (const std::string& file : data) give(file, all);
   std::stable_sort(all.begin(), all.end(), [](const Shown& a, const Shown& b) {

@@ -26,8 +26,9 @@ std::vector<std::string> namesOf(const std::string& structure, const std::string
   return {(right ? "rh." : "lh.") + freeSurfer, (right ? "hemi-R_" : "hemi-L_") + gifti};
 }
 
-Eigen::VectorXd readMap(Context& context, const std::string& path, Eigen::Index count) {
-  context.input(path);
+Eigen::VectorXd readMap(Context& context, const std::string& path, std::string_view role,
+                        Eigen::Index count) {
+  context.input(path, role);
   return io::readVertexMaps(path, count).front().values;
 }
 
@@ -66,8 +67,9 @@ FoldingFiles subjectFiles(const std::string& sphere, const std::string& structur
   return files;
 }
 
-sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files) {
-  context.input(files.sphere);
+sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files,
+                                  std::string_view role) {
+  context.input(files.sphere, role);
   sphere::FoldingSphere folding;  // spheres have a frame of their own
   folding.sphere = io::readSurface(files.sphere, {.space = io::SurfaceSpace::Scanner}).mesh;
   sphere::requireSphere(folding.sphere, files.sphere);
@@ -85,10 +87,11 @@ sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files) {
                  " vertices were moved to mend that");
   }
   const Eigen::Index count = folding.sphere.vertexCount();
-  folding.sulc = readMap(context, files.sulc, count);
-  folding.curvature = readMap(context, files.curvature, count);
-  if (!files.sulcSd.empty()) folding.sulcSd = readMap(context, files.sulcSd, count);
-  if (!files.curvatureSd.empty()) folding.curvatureSd = readMap(context, files.curvatureSd, count);
+  folding.sulc = readMap(context, files.sulc, role, count);
+  folding.curvature = readMap(context, files.curvature, role, count);
+  if (!files.sulcSd.empty()) folding.sulcSd = readMap(context, files.sulcSd, role, count);
+  if (!files.curvatureSd.empty())
+    folding.curvatureSd = readMap(context, files.curvatureSd, role, count);
   return folding;
 }
 

@@ -23,6 +23,7 @@ using FoldingFiles = CortexTemplate;
 
 /// Reads them, each recorded as an input, and demands a sphere about the origin; faces turned over
 /// are mended and said.
-[[nodiscard]] sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files);
+[[nodiscard]] sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files,
+                                                std::string_view role = "file");
 
 }  // namespace explica::app

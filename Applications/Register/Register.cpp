@@ -6,6 +6,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Folding.h"
@@ -49,6 +50,9 @@ void declare(Declaration& d, RegisterSettings& s) {
                    s.toCurvature, "Target")
       .option("Target", Field{"mirror", "", "register to the other hemisphere, mirrored"}, s.mirror)
       .options("Registration", s.registration)
+      .ofAnother("to")
+      .ofAnother("to-sulc")
+      .ofAnother("to-curvature")
       .excludes("to", {"template"})
       .needs({"to-sulc", "to-curvature"}, {"to"})
       .output("sphere.reg.surf.gii", FileKind::Surface, "the sphere in the template's frame")
@@ -67,8 +71,8 @@ FoldingFiles targetFiles(Context& context, const RegisterSettings& s,
                          const std::string& structure) {
   const std::string side = s.mirror ? otherSide(structure) : structure;
   if (s.to) {
-    const std::string known = io::structureFromName(*s.to);
-    if (known != "Other" && known != side) {
+    const std::string known = io::statedStructure(*s.to);
+    if (!known.empty() && known != side) {
       throw InvalidInput("'" + *s.to + "' and '" + s.sphere + "' are " +
                          (s.mirror ? "the same hemisphere" : "of different hemispheres") +
                          (s.mirror ? "; leave --mirror out" : "; add --mirror"));
@@ -103,7 +107,8 @@ Termination run(Context& context, const RegisterSettings& s) {
   if (structure == "Other") structure = "CortexLeft";
   const FoldingFiles files = subjectFiles(s.sphere, structure, s.sulc, s.curvature, s.surfaces);
   sphere::FoldingSphere moving = readFolding(context, files);
-  const sphere::FoldingSphere target = readFolding(context, targetFiles(context, s, structure));
+  const sphere::FoldingSphere target =
+      readFolding(context, targetFiles(context, s, structure), "to");
   if (s.mirror) moving.sphere = sphere::mirrored(std::move(moving.sphere));
   sphere::SphereRegistration result;
   {

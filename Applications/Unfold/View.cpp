@@ -27,7 +27,15 @@ visibility::Viewpoints viewFrom(const ViewSettings& view, const std::optional<st
   if (surface) return visibility::viewSurface(io::readSurface(*surface, reading).mesh);
   const double distance = view.distance ? *view.distance : unfolding::usualDistance(mesh);
   std::vector<Vector> directions(view.direction.begin(), view.direction.end());
-  if (directions.empty()) directions.push_back(normal);
+  if (directions.empty()) {
+    constexpr double kCancelled = 1e-6;  // of the mean normal of a flat region
+    if (!(normal.norm() > kCancelled)) {
+      throw InvalidInput(
+          "the region's normals cancel out, so that it has no mean normal to be seen along; give "
+          "--direction or --viewpoint");
+    }
+    directions.push_back(normal);
+  }
   std::vector<Point> points;
   for (const Vector& direction : directions) {
     const double length = direction.norm();

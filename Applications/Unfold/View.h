@@ -39,8 +39,9 @@ void describe(ViewSettings& view, Visitor&& visit) {
 /// The viewpoints that the options name, or one that faces the region.
 /// @param mesh    the surface that is looked at
 /// @param about   what a direction counts from, RAS mm
-/// @param normal  the direction where none is given, of any length
-/// @throws InvalidInput  several ways of naming them; a direction without length
+/// @param normal  the direction where none is given: the mean of unit normals
+/// @throws InvalidInput  several ways of naming them; a direction without length; no direction, and
+///                       normals that cancel
 [[nodiscard]] visibility::Viewpoints viewFrom(const ViewSettings& view,
                                               const std::optional<std::string>& surface,
                                               const io::SurfaceReadOptions& reading,

@@ -87,6 +87,56 @@ TEST(RegisterPeople, ThereAndBackAgainIsTheIdentity) {
   EXPECT_LT(angles.mean(), 1);
 }
 
+TEST(RegisterPeople, TakesAnothersMapsByNameAndMixesUpNone) {
+  TemporaryFolder folder;
+  ASSERT_EQ(
+      explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", folder / "cortex"})
+          .exitCode,
+      0);
+  for (const std::string faces : {"2000", "2400"}) {
+    const std::string made = folder / ("surfaces" + faces);
+    ASSERT_EQ(explica({"surface", folder / "cortex/labels.nii.gz", "--white-label", "3",
+                       "--grey-label", "2", "--faces", faces, "--out", made})
+                  .exitCode,
+              0);
+    ASSERT_EQ(explica({"sphere", made + "/white.surf.gii", "--out", folder / ("sphere" + faces)})
+                  .exitCode,
+              0);
+  }
+  const auto onto = [&](const std::string& sulc, const std::string& toSulc) {
+    return explica({"register", folder / "sphere2000/sphere.surf.gii", "--sulc",
+                    folder / ("surfaces" + sulc + "/sulc.shape.gii"), "--curvature",
+                    folder / "surfaces2000/curvature.shape.gii", "--to",
+                    folder / "sphere2400/sphere.surf.gii", "--to-sulc",
+                    folder / ("surfaces" + toSulc + "/sulc.shape.gii"), "--to-curvature",
+                    folder / "surfaces2400/curvature.shape.gii", "--level", "3", "--out",
+                    folder / "out", "--force"});
+  };
+  const auto right = onto("2000", "2400");
+  EXPECT_EQ(right.exitCode, 0) << right;
+  for (const auto& wrong : {onto("2400", "2400"), onto("2000", "2000")}) {
+    EXPECT_EQ(wrong.exitCode, 2) << wrong;
+    EXPECT_NE(wrong.err.find("was not made for the mesh of"), std::string::npos) << wrong;
+  }
+}
+
+TEST(RegisterPeople, LeftGoesOntoAnothersRightMirrored) {
+  TemporaryFolder folder;
+  writePerson(folder);
+  for (const char* map : {"sphere", "sulc", "curv"}) {
+    fs::copy_file(folder / (std::string("lh.") + map), folder / (std::string("rh.") + map));
+  }
+  const auto onto = [&](const std::string& side) {
+    return explica({"register", folder / "lh.sphere", "--to", folder / (side + ".sphere"),
+                    "--mirror", "--level", "3", "--out", folder / side});
+  };
+  const auto right = onto("rh");
+  EXPECT_EQ(right.exitCode, 0) << right;
+  const auto left = onto("lh");
+  EXPECT_EQ(left.exitCode, 2) << left;
+  EXPECT_NE(left.err.find("leave --mirror out"), std::string::npos) << left;
+}
+
 TEST(Parcellate, LabelsTheVoxelsBetweenTheSurfaces) {
   TemporaryFolder folder;
   writeMapAndRegions(folder);

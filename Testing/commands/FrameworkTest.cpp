@@ -116,6 +116,7 @@ TEST(Framework, WrongUseIsExitCodeOneWithAHint) {
       {shell(folder / "a", {"--aspect", "1,", "1,", "-2"}), "without spaces: --aspect 1,1,-2"},
       {{"thickness", "x.nii", "--tissue", "2", "3", "--out", folder / "a"}, "--tissue 2,3"},
       {shell(folder / "a", {"surplus"}), "'surplus' was not expected"},
+      {{"cifti", "lh.thickness"}, "was not expected: files are given by --left, --right"},
       {shell(folder / "a", {"--threads", "0"}), "threads: '0' is not within 1 to 4096"},
       {shell(folder / "a", {"--spacing"}), "--spacing"},
   };

@@ -177,6 +177,12 @@ TEST(Glm, NamesPeopleOfOneListOnlyAndMapsOfOtherSizes) {
                     folder / "out"});
   };
   EXPECT_EQ(run(list).exitCode, 0);
+  writeText(folder / "numbered.tsv", "number\tparticipant_id\n1\tsub-1\n");
+  const auto numbered = explica({"glm", folder / "maps.tsv", "--table", folder / "numbered.tsv",
+                                 "--person", "number", "--model", "t ~ number", "--surface",
+                                 folder / "sphere.surf.gii", "--out", folder / "numbered"});
+  EXPECT_EQ(numbered.exitCode, 2) << numbered;
+  EXPECT_NE(numbered.err.find("--person participant_id"), std::string::npos) << numbered;
   EXPECT_NE(run(list + "sub-9\tsub-1.shape.gii\n").err.find("'sub-9'"), std::string::npos);
   EXPECT_NE(run(list + "sub-2\tsub-2.shape.gii\n").err.find("'sub-2' is there twice"),
             std::string::npos);

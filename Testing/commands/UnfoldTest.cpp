@@ -375,6 +375,21 @@ TEST(UnfoldCommand, ByDefaultThePatchIsSeenAlongItsMeanNormal) {
   EXPECT_GT(seen.dot(normal.normalized()), std::cos(2.0 * kPi / 180));  // from the centroid
 }
 
+TEST(UnfoldCommand, ARegionThatFacesAllWaysNeedsADirection) {
+  const TemporaryFolder folder;
+  const TriangleMesh ball = geometry::makeIcosphere(3, 20.0);
+  io::writeSurface(folder / "ball.surf.gii", ball);
+  Eigen::VectorXi belt(ball.vertexCount());
+  for (Eigen::Index v = 0; v < belt.size(); ++v) belt[v] = std::abs(ball.positions(v, 2)) < 8;
+  io::writeGiftiLabel(folder / "belt.label.gii", {"belt", belt, {{0, "rest", {}}, {1, "belt", {}}}},
+                      "Other");
+  const auto result = explica({"unfold", folder / "ball.surf.gii", "--label",
+                               folder / "belt.label.gii", "--out", folder / "out"});
+  EXPECT_EQ(result.exitCode, 2) << result;
+  EXPECT_NE(result.err.find("normals cancel out"), std::string::npos) << result;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
 TEST(UnfoldCommand, ByDefaultThePatchStaysInPlaceAndItsCollarIsAccountedFor) {
   const TemporaryFolder folder;
   const auto result =

@@ -76,6 +76,11 @@ Declaration& Declaration::ofSide(std::string_view wanted, Hemisphere side) {
   return *this;
 }
 
+Declaration& Declaration::ofAnother(std::string_view wanted) {
+  get(wanted).ofAnother = true;
+  return *this;
+}
+
 Declaration& Declaration::oneByOne(std::string_view wanted) {
   get(wanted).oneByOne = true;
   return *this;

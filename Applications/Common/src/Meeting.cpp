@@ -27,6 +27,10 @@ bool isVertexData(const Parameter* p) {
   return p && p->file && (*p->file == FileKind::VertexData || *p->file == FileKind::VertexLabel);
 }
 
+bool isOfAnother(const Parameter* p) {
+  return p && p->ofAnother;
+}
+
 /// Whether a name is one of a surface's; FreeSurfer's (lh.pial) cannot be told from its maps'.
 bool namesSurface(const fs::path& file) {
   const std::string name = file.filename().string();
@@ -76,7 +80,9 @@ bool filesMeet(const Declaration& declaration) {
 
 Meeting::Meeting(const Declaration& declaration, const std::set<std::string>& given,
                  std::vector<std::string> accepted)
-    : declaration_(declaration), accepted_(std::move(accepted)) {
+    : declaration_(declaration),
+      accepted_(std::move(accepted)),
+      mirrored_(given.count("mirror") > 0) {
   const bool ownLimits = declaration.find("accept") != nullptr;
   for (const std::string& name : accepted_) {
     if (!ownLimits && name != kAcceptHemisphere && name != kAcceptMesh) {
@@ -160,8 +166,9 @@ std::vector<std::string> Meeting::add(const std::string& role, const fs::path& p
   }
   for (const File& other : files_) {
     if (other.role != role && hasBothSides(other.role)) continue;
-    contradict(kAcceptHemisphere, sidesOf(other, file), sentences);
-    contradict(kAcceptMesh, meshesOf(other, file), sentences);
+    const bool apart = isOfAnother(parameter) != isOfAnother(other.parameter);
+    if (!apart || !mirrored_) contradict(kAcceptHemisphere, sidesOf(other, file), sentences);
+    if (!apart) contradict(kAcceptMesh, meshesOf(other, file), sentences);
   }
   files_.push_back(file);
   return sentences;

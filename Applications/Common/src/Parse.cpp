@@ -8,6 +8,7 @@
 #include "Wording.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -28,6 +29,17 @@ struct Words {
   int flagCount = 0;
   CLI::Option* handle = nullptr;
 };
+
+/// ": files are given by --left, --right" of a command that takes none by its place; else nothing.
+std::string optionsThatTakeFiles(const Declaration& declaration) {
+  constexpr std::size_t kNamed = 3;
+  std::vector<std::string> names;
+  for (const Parameter& p : declaration.parameters) {
+    if (p.positional) return {};
+    if (p.file && names.size() < kNamed) names.push_back("--" + p.option.name);
+  }
+  return names.empty() ? "" : ": files are given by " + joined(names, ", ");
+}
 
 /// `--viewpoint -10,2,3` would look like an option -1: binds a negative number to the option
 /// before.
@@ -190,7 +202,9 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     }
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
-    if (word.rfind('-', 0) != 0) throw UsageError("'" + extra + "' was not expected");
+    if (word.rfind('-', 0) != 0) {
+      throw UsageError("'" + extra + "' was not expected" + optionsThatTakeFiles(declaration));
+    }
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }

@@ -8,6 +8,7 @@
 #include "GiftiFormat.h"
 #include "PlainMeshFormats.h"
 #include "SurfaceFrame.h"
+#include "VertexFileEnding.h"
 #include "VolumeFormats.h"
 #include "VtkFormat.h"
 
@@ -56,9 +57,7 @@ std::string unitByName(const std::filesystem::path& path) {
        {"area", "mm^2"},
        {"volume", "mm^3"}}};
   std::string name = path.filename().string();
-  for (const std::string_view ending : {".gz", ".gii", ".shape", ".mgh", ".mgz"}) {
-    if (name.ends_with(ending)) name.resize(name.size() - ending.size());
-  }
+  name.resize(name.size() - vertexFileEnding(name).size());
   const std::string word = name.substr(name.find_last_of("._") + 1);
   for (const auto& [known, unit] : kUnits) {
     if (word == known) return std::string(unit);

@@ -3,16 +3,14 @@
 
 #include "Explica/IO/VertexFile.h"
 #include "Explica/IO/StatedHemisphere.h"
+#include "VertexFileEnding.h"
 
 #include "Explica/Core/Errors.h"
 
 #include <array>
 
 namespace explica::io {
-namespace {
 
-/// The ending that tells a per-vertex file's format: ".shape.gii", ".annot"; "" of FreeSurfer's
-/// curv files.
 std::string vertexFileEnding(const std::string& name) {
   constexpr std::array<std::string_view, 12> kEndings = {
       ".shape.gii", ".func.gii", ".label.gii", ".surf.gii", ".gii", ".annot",
@@ -25,8 +23,6 @@ std::string vertexFileEnding(const std::string& name) {
   }
   return "";
 }
-
-}  // namespace
 
 VertexFileKind vertexFileKind(const std::filesystem::path& path) {
   const std::string ending = vertexFileEnding(path.filename().string());

@@ -137,6 +137,20 @@ Eigen::MatrixXd numbersIn(const Table& table, const std::vector<std::size_t>& ro
   return values;
 }
 
+namespace {
+
+/// The first column in which a cell is this; empty if none.
+std::string columnThatHolds(const Table& table, std::string_view wanted) {
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    for (const auto& row : table.rows) {
+      if (row[c] == wanted) return table.columns[c];
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view listName,
                         const Table& about, std::string_view key, bool allowMissing) {
   std::multimap<std::string_view, std::size_t> rows;
@@ -159,10 +173,12 @@ JoinedPeople joinPeople(const std::vector<std::string>& people, std::string_view
     } else if (allowMissing) {
       joined.leftOut.push_back(people[i]);
     } else {
+      const std::string other = columnThatHolds(about, people[i]);
       throw InvalidInput("'" + people[i] + "' of '" + std::string(listName) + "' has no row in '" +
-                         about.name + "', where column '" + std::string(key) +
-                         "' names people (--person chooses another); add the row, or analyse those "
-                         "in both lists with --subset");
+                         about.name + "', where column '" + std::string(key) + "' names people" +
+                         (other.empty() ? " (--person chooses another); add the row, or analyse "
+                                          "those in both lists with --subset"
+                                        : "; column '" + other + "' has it: --person " + other));
     }
   }
   for (const auto& row : about.rows) {

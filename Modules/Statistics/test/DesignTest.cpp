@@ -136,6 +136,10 @@ TEST(People, InOneListOnlyOrTwiceAreNamed) {
             }).find("'sub-3' of 'maps.tsv' has no row"),
             std::string::npos);
   EXPECT_NE(refusal([&] {
+              (void)joinPeople({"sub-1"}, "maps.tsv", about, "age", false);
+            }).find("column 'participant_id' has it: --person participant_id"),
+            std::string::npos);
+  EXPECT_NE(refusal([&] {
               (void)joinPeople({"sub-1"}, "maps.tsv", about, "participant_id", false);
             }).find("'sub-2' of 'participants.csv' is not in 'maps.tsv'"),
             std::string::npos);

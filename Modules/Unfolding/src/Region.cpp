@@ -235,9 +235,13 @@ Point centroidOf(const TriangleMesh& mesh, const Region& region) {
 
 Vector meanNormal(const TriangleMesh& mesh, const Region& region) {
   Vector sum = Vector::Zero();
+  double size = 0;
   const Positions normals = geometry::faceNormalVectors(mesh);
-  for (const std::int32_t f : region.faces) sum += normals.row(f).transpose();
-  return sum;
+  for (const std::int32_t f : region.faces) {
+    sum += normals.row(f).transpose();
+    size += normals.row(f).norm();
+  }
+  return sum / size;
 }
 
 }  // namespace explica::unfolding

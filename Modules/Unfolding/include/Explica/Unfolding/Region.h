@@ -72,7 +72,8 @@ struct Region {
 /// counted from.
 [[nodiscard]] Point centroidOf(const TriangleMesh& mesh, const Region& region);
 
-/// Along the region's mean outward normal, of any length: zero where the faces cancel.
+/// The region's outward unit normals averaged over its area: of length 1 where it is flat, 0 where
+/// they cancel.
 [[nodiscard]] Vector meanNormal(const TriangleMesh& mesh, const Region& region);
 
 /// How far off a viewpoint is of which only the direction is given: 1000 mm, or three times the
