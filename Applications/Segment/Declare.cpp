@@ -22,9 +22,9 @@ constexpr const char* kDescription =
 
 void declareTissueOutputs(Declaration& d) {
   d.output("seg.nii.gz", FileKind::LabelVolume, "1 fluid, 2 grey, 3 white, 0 outside")
-      .output("csf.nii.gz", FileKind::Volume, "share of fluid in each voxel")
-      .output("gm.nii.gz", FileKind::Volume, "share of grey matter in each voxel")
-      .output("wm.nii.gz", FileKind::Volume, "share of white matter in each voxel")
+      .output("csf.nii.gz", FileKind::Volume, "probability of fluid in each voxel")
+      .output("gm.nii.gz", FileKind::Volume, "probability of grey matter in each voxel")
+      .output("wm.nii.gz", FileKind::Volume, "probability of white matter in each voxel")
       .output("bias.nii.gz", FileKind::Volume, "multiplicative bias field")
       .output("brain_mask.nii.gz", FileKind::LabelVolume, "1 in the brain")
       .output("brain_doubt.nii.gz", FileKind::Volume,

@@ -34,8 +34,11 @@ constexpr double kFluidOverGrey = 0.7;  // what is brighter beside grey matter i
 constexpr int kEdgeRounds = 10;         // after which levels move no more
 constexpr float kLikelyWhite = 0.5F;    // likelier than all else together
 constexpr int kPriorRounds = 4;         // for the neighbours to agree
-constexpr double kLocalBlocks = 2;      // of the local windows' width
-constexpr double kDark = 1.0 / 3;       // of the darkest class, in which fluid and grey matter mix
+// Of the prior's weight, while classes are estimated: shares that have been smoothed hide the
+// spread of what they came from.
+constexpr double kWhileEstimated = 0.125;
+constexpr double kLocalBlocks = 2;  // of the local windows' width
+constexpr double kDark = 1.0 / 3;   // of the darkest class, in which fluid and grey matter mix
 constexpr std::int32_t kNone = -1, kDarkRemains = -2;  // neighbours that are not in the brain
 
 /// Fluid, grey, white, and the voxels where two of them meet.
@@ -299,7 +302,7 @@ Shares sharesOf(const Posterior& p, float y, const Mixture& mixture) {
   return shares;
 }
 
-/// Posterior of each voxel given the mixture and its neighbours' contents.
+/// Posterior of each voxel given the mixture and its neighbours' contents, which count by weights.
 void expect(const Brain& brain, const std::vector<float>& corrected, const Mixture& mixture,
             const std::array<float, 6>& weights, const std::vector<Shares>& before,
             std::vector<Posterior>& after) {
@@ -442,10 +445,6 @@ class Classifier {
     markRim(grid_, brain_);
     noise_ = noiseOf(brain_);
     mixture_ = firstGuess(brain_);
-    const Vector spacing = grid_.spacing;
-    for (int n = 0; n < 6; ++n) {
-      weights_[n] = static_cast<float>(options_.smooth * spacing.minCoeff() / spacing[n / 2]);
-    }
     corrected_ = brain_.intensity;
     field_.assign(brain_.size(), 1.0f);
     posterior_.resize(brain_.size());
@@ -455,7 +454,7 @@ class Classifier {
   /// @return how far a mean has moved, of their range
   /// @throws InvalidInput  the classes fall together
   double iterate() {
-    expect(brain_, corrected_, mixture_, weights_, shares_, posterior_);
+    expect(brain_, corrected_, mixture_, weights(kWhileEstimated), shares_, posterior_);
     if (options_.biasWidth > 0) {
       field_ = updateBias(grid_, brain_, mixture_, posterior_, options_.biasWidth);
       forVoxels([&](std::size_t b) { corrected_[b] = brain_.intensity[b] / field_[b]; });
@@ -485,17 +484,16 @@ class Classifier {
     forVoxels(
         [&](std::size_t b) { samples.pure[b] = posterior_[b][kPureWhite] > kLikelyWhite ? 1 : 0; });
     BorderFinder finder(window, samples, mean);
-    // Two tissues of equal spread and share meet half way between their means.
-    Mixture fair = mixture_;
-    const double pure = (1 - mixture_.share[kCsfGrey] - mixture_.share[kGreyWhite]) / kClasses;
-    for (int k = 0; k < kClasses; ++k) {
-      fair.share[k] = pure;
-      fair.deviation[k] = 0.5 * (mixture_.deviation[kPureGrey] + mixture_.deviation[kPureWhite]);
-    }
+    // Two tissues of equal spread and share meet half way between their means.  No tissue spreads
+    // less than the noise.  Mixtures, which explain any voxel's noise, have done their work.
+    const double spread = 0.5 * (mixture_.deviation[kPureGrey] + mixture_.deviation[kPureWhite]);
+    Mixture fair{mean, {}, {}};
+    fair.deviation.fill(std::max(spread, noise_));
+    std::fill_n(fair.share.begin(), kClasses, 1.0 / kClasses);
     for (int round = 0; round < kEdgeRounds; ++round) finder.improve();
     const auto even = evened(corrected_, finder.levels(), mean);
     for (int round = 0; round < kPriorRounds; ++round) {
-      expect(brain_, even, fair, weights_, shares_, posterior_);
+      expect(brain_, even, fair, weights(1), shares_, posterior_);
       takeShares(even);
     }
   }
@@ -556,10 +554,20 @@ class Classifier {
     forVoxels([&](std::size_t b) { shares_[b] = sharesOf(posterior_[b], seen[b], mixture_); });
   }
 
+  /// What each of the six neighbours counts, times a factor: a farther one less.
+  [[nodiscard]] std::array<float, 6> weights(double factor) const {
+    std::array<float, 6> result;
+    const Vector& spacing = grid_.spacing;
+    for (int n = 0; n < 6; ++n) {
+      result[n] =
+          static_cast<float>(factor * options_.smooth * spacing.minCoeff() / spacing[n / 2]);
+    }
+    return result;
+  }
+
   Grid grid_;
   TissueOptions options_;
   Brain brain_;
-  std::array<float, 6> weights_{};
   std::vector<float> shading_, field_, corrected_;
   double noise_ = 0;  ///< deviation
   Mixture mixture_;

@@ -70,6 +70,12 @@ TEST(TissueSegmentation, FindsThreeTissuesInNoise) {
   EXPECT_NEAR(found.classes[2].mean, 115, 2);
 }
 
+// Noise of a third of the contrast of grey and white matter: neighbours tell what a voxel cannot.
+TEST(TissueSegmentation, FindsThreeTissuesInStrongNoise) {
+  const Phantom phantom = makePhantom(11, 0);
+  EXPECT_GT(agreement(segmentTissue(phantom.image).labels, phantom.truth), 0.9);
+}
+
 TEST(TissueSegmentation, ATightMaskMakesNoFluidOfGreyMattersNoise) {
   // All fluid that is left is a ventricle's.
   Phantom phantom = makePhantom(9, 0);

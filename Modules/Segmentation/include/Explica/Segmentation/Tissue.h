@@ -19,7 +19,7 @@ inline constexpr Label kWhite = 3;
 
 /// How three tissue classes are found in a skull-stripped T1.
 struct TissueOptions {
-  double smooth = 0.1;    ///< weight of the Markov prior; 0 looks at each voxel alone
+  double smooth = 0.8;    ///< weight of the Markov prior; 0 looks at each voxel alone
   double biasWidth = 25;  ///< standard deviation of the bias field's smoothing, mm; 0 for no field
   double localWidth = 8;  ///< of the windows in which edges tell a border's brightness, mm
   int maxIterations = 200;  ///< of expectation and maximisation
@@ -54,7 +54,7 @@ struct TissueClass {
 /// Classes of a T1 and how they were found.
 struct TissueSegmentation {
   Volume<Label> labels;  ///< 0 outside, kCsf, kGrey, kWhite: the likeliest class
-  std::array<Volume<float>, 3> probability;  ///< shares of CSF, grey, white; sum 1 inside
+  std::array<Volume<float>, 3> probability;  ///< of CSF, grey, white; sum 1 inside
   Volume<float> bias;                        ///< multiplicative field, geometric mean 1; 1 outside
   std::array<TissueClass, 3> classes;
   double deepFluid = kNaN;  ///< bias-corrected intensity of fluid far from other tissue, as in
@@ -70,11 +70,12 @@ struct TissueSegmentation {
 /// Expectation-maximisation of a mixture of y / b: three Gaussians for the pure tissues
 /// and two blurred uniforms for voxels shared by fluid and grey or by grey and white [Santago1993].
 /// A mean-field Markov prior looks at the six neighbours [VanLeemput1999, Zhang2001], weighed by
-/// 1 / distance so that anisotropic voxels are treated alike.  The bias field b is smooth and
-/// multiplicative, the least-squares one under a Gaussian window [Pham1999]:
-/// b = G * (sum_k p_k m_k y / s_k^2) / G * (sum_k p_k m_k^2 / s_k^2).
-/// `probability` is the expected share of each tissue in the voxel, so its 0.5 level is a sub-voxel
-/// border.
+/// 1 / distance so that anisotropic voxels are treated alike.  It counts an eighth while the
+/// classes are estimated, as smoothed voxels hide their class's spread.  In the end, with borders
+/// put where the edges are, it counts in full, and mixtures no longer: they would explain any
+/// voxel's noise.  The bias field b is smooth and multiplicative, the least-squares one under a
+/// Gaussian window [Pham1999]: b = G * (sum_k p_k m_k y / s_k^2) / G * (sum_k p_k m_k^2 / s_k^2).
+/// `probability` of each tissue is 0.5 at a sub-voxel border.
 /// Classes are ordered by their means, so the image must be T1-weighted.
 ///
 /// @param intensity  I x J x K; the brain is where it is > 0;
