@@ -208,7 +208,7 @@ double noiseOfContrast(const TissueSegmentation& tissue) {
 }
 
 double brighterThanWhite(const Volume<float>& intensity, const TissueSegmentation& tissue) {
-  const double least = 1.2 * tissue.classes[2].mean;
+  const double least = kBrighterThanTissue * tissue.classes[2].mean;
   std::int64_t bright = 0;
   for (std::size_t v = 0; v < intensity.size(); ++v) {
     bright += tissue.labels[v] != 0 && intensity[v] > least * tissue.bias[v] ? 1 : 0;

@@ -39,7 +39,8 @@ constexpr int kPriorRounds = 4;         // for the neighbours to agree
 constexpr double kWhileEstimated = 0.125;
 constexpr double kLocalBlocks = 2;  // of the local windows' width
 constexpr double kDark = 1.0 / 3;   // of the darkest class, in which fluid and grey matter mix
-constexpr std::int32_t kNone = -1, kDarkRemains = -2;  // neighbours that are not in the brain
+constexpr double kBeyondNoise = 4;  // deviations
+constexpr std::int32_t kNone = -1, kRemains = -2;  // neighbours that are not in the brain
 
 /// Fluid, grey, white, and the voxels where two of them meet.
 enum Component { kPureCsf, kPureGrey, kPureWhite, kCsfGrey, kGreyWhite, kComponents };
@@ -212,27 +213,36 @@ std::vector<std::uint8_t> darkRemains(const Grid& grid, Brain& brain) {
   return dark;
 }
 
-/// Takes dark remains out of the brain; to their neighbours they are fluid.
-/// @return their voxels
-std::vector<std::size_t> takeOut(const std::vector<std::uint8_t>& dark, Brain& brain) {
-  std::vector<std::size_t> taken;
-  std::vector<std::int32_t> now(brain.size(), kDarkRemains);
-  Brain rest;
+/// Leaves the values of what is kept.
+template <class Value>
+void keep(const std::vector<std::uint8_t>& remains, std::vector<Value>& values) {
+  std::size_t kept = 0;
+  for (std::size_t b = 0; b < remains.size(); ++b) {
+    if (remains[b] == 0) values[kept++] = values[b];
+  }
+  values.resize(kept);
+}
+
+/// Takes remains out of the brain; to their neighbours they are fluid.
+/// @param taken  their voxels are added to it
+void takeOut(const std::vector<std::uint8_t>& remains, Brain& brain,
+             std::vector<std::size_t>& taken) {
+  std::vector<std::int32_t> now(brain.size(), kRemains);
+  std::int32_t kept = 0;
   for (std::size_t b = 0; b < brain.size(); ++b) {
-    if (dark[b] != 0) {
+    if (remains[b] != 0) {
       taken.push_back(brain.voxel[b]);
-      continue;
+    } else {
+      now[b] = kept++;
     }
-    now[b] = static_cast<std::int32_t>(rest.size());
-    rest.voxel.push_back(brain.voxel[b]);
-    rest.neighbours.push_back(brain.neighbours[b]);
-    rest.intensity.push_back(brain.intensity[b]);
   }
-  for (auto& neighbours : rest.neighbours) {
-    for (std::int32_t& other : neighbours) other = other < 0 ? kNone : now[other];
+  keep(remains, brain.voxel);
+  keep(remains, brain.neighbours);
+  keep(remains, brain.intensity);
+  keep(remains, brain.rim);
+  for (auto& neighbours : brain.neighbours) {
+    for (std::int32_t& other : neighbours) other = other < 0 ? other : now[other];
   }
-  brain = std::move(rest);
-  return taken;
 }
 
 /// Logarithm of each component's weighted density between the outer means, tabulated.
@@ -314,7 +324,7 @@ void expect(const Brain& brain, const std::vector<float>& corrected, const Mixtu
         Shares around = {};
         for (int n = 0; n < 6; ++n) {
           const std::int32_t other = brain.neighbours[b][n];
-          if (other == kDarkRemains) around[kPureCsf] += weights[n];
+          if (other == kRemains) around[kPureCsf] += weights[n];
           if (other < 0) continue;
           for (int k = 0; k < kClasses; ++k) around[k] += weights[n] * before[other][k];
         }
@@ -515,8 +525,21 @@ class Classifier {
     return deep.size() < kFewestDeep ? mixture_.mean[0] : upperMedian(std::move(deep));
   }
 
-  /// @param dark  voxels that are fluid without being looked at
-  void write(const std::vector<std::size_t>& dark, TissueSegmentation& result) const {
+  /// Takes out what is too bright for any tissue, as fat and vessels are.
+  /// @param taken  their voxels are added to it
+  /// @return whether there was any
+  bool takeOutBright(std::vector<std::size_t>& taken) {
+    const std::vector<std::uint8_t> bright = brightRemains();
+    if (std::find(bright.begin(), bright.end(), 1) == bright.end()) return false;
+    takeOut(bright, brain_, taken);
+    for (auto* values : {&shading_, &field_, &corrected_}) keep(bright, *values);
+    keep(bright, posterior_);
+    keep(bright, shares_);
+    return true;
+  }
+
+  /// @param remains  voxels that are fluid without being looked at
+  void write(const std::vector<std::size_t>& remains, TissueSegmentation& result) const {
     result.deepFluid = deepFluid();
     result.noise = noise_;
     for (int k = 0; k < kClasses; ++k) {
@@ -535,15 +558,35 @@ class Classifier {
       result.labels[v] = static_cast<Label>(likeliest - shares_[b].begin()) + kCsf;
       result.bias[v] = shading_[b] * field_[b];
     }
-    for (const std::size_t v : dark) {
+    for (const std::size_t v : remains) {
       result.probability[kPureCsf][v] = 1;
       result.labels[v] = kCsf;
     }
     result.classes[kPureCsf].share +=
-        static_cast<double>(dark.size()) / static_cast<double>(result.brainVoxels);
+        static_cast<double>(remains.size()) / static_cast<double>(result.brainVoxels);
   }
 
  private:
+  /// What is too bright for any tissue, and what looks like tissue between it and what is dark,
+  /// where the two share voxels.
+  [[nodiscard]] std::vector<std::uint8_t> brightRemains() const {
+    const double white = mixture_.mean[kPureWhite];
+    const double least = std::max(kBrighterThanTissue * white, white + kBeyondNoise * noise_);
+    const double dark = 0.5 * (mixture_.mean[kPureCsf] + mixture_.mean[kPureGrey]);
+    std::vector<std::uint8_t> remains(brain_.size(), 0);
+    for (std::size_t b = 0; b < brain_.size(); ++b) {
+      if (!(corrected_[b] > least)) continue;
+      remains[b] = 1;
+      for (int n = 0; n < 6; ++n) {
+        const std::int32_t next = brain_.neighbours[b][n];
+        if (next < 0) continue;
+        const std::int32_t beyond = brain_.neighbours[next][n];
+        if (beyond < 0 || corrected_[beyond] < dark) remains[next] = 1;
+      }
+    }
+    return remains;
+  }
+
   template <class Work>
   void forVoxels(const Work& work) const {
     parallelFor(brain_.size(), kGrain, work);
@@ -575,6 +618,25 @@ class Classifier {
   std::vector<Shares> shares_;
 };
 
+/// Estimates the classes until they rest, a stop is asked for or the iterations are used up.
+void estimate(Classifier& classifier, const TissueOptions& options, const Monitor& monitor,
+              TissueSegmentation& result) {
+  result.termination = Termination::MaxIterations;
+  for (int iteration = 0; iteration < options.maxIterations; ++iteration) {
+    if (monitor.shouldStop()) {
+      result.termination = Termination::Interrupted;
+      return;
+    }
+    monitor.progress(static_cast<double>(iteration) / options.maxIterations, "tissue classes");
+    const double moved = classifier.iterate();
+    ++result.iterations;
+    if (iteration > 2 && moved <= options.tolerance) {
+      result.termination = Termination::Converged;
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<Label>& mask,
@@ -591,25 +653,13 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
   }
   TissueSegmentation result;
   result.brainVoxels = static_cast<std::int64_t>(brain.size());
-  result.termination = Termination::MaxIterations;
-  std::vector<std::size_t> dark;
-  if (mask.size() == 0) dark = takeOut(darkRemains(intensity.grid, brain), brain);
+  std::vector<std::size_t> remains;
+  if (mask.size() == 0) takeOut(darkRemains(intensity.grid, brain), brain, remains);
   Classifier classifier(intensity.grid, std::move(brain), options);
-  while (result.iterations < options.maxIterations) {
-    if (monitor.shouldStop()) {
-      result.termination = Termination::Interrupted;
-      break;
-    }
-    monitor.progress(static_cast<double>(result.iterations) / options.maxIterations,
-                     "tissue classes");
-    const double moved = classifier.iterate();
-    if (++result.iterations > 3 && moved <= options.tolerance) {
-      result.termination = Termination::Converged;
-      break;
-    }
-  }
+  estimate(classifier, options, monitor, result);
+  if (classifier.takeOutBright(remains)) estimate(classifier, options, monitor, result);
   if (options.localWidth > 0 && !monitor.shouldStop()) classifier.followEdges();
-  classifier.write(dark, result);
+  classifier.write(remains, result);
   monitor.progress(1, "tissue classes");
   return result;
 }

@@ -306,6 +306,30 @@ TEST(TissueSegmentation, DarkRemainsAtTheBrainsEdgeAreNotFluid) {
   EXPECT_NEAR(segmentTissue(phantom.image).classes[0].mean, 35, 4);
 }
 
+// Skull stripping leaves fat of the orbit: neither it is tissue, nor what it shares with fluid.
+TEST(TissueSegmentation, FatBesideTheBrainIsNoTissue) {
+  for (const Vector& spacing : {Vector(1, 1, 1), Vector(1, 1, 2)}) {
+    Phantom phantom = makePhantom(3, 0.1, spacing);
+    const Point middle(57, 30, 30);
+    std::size_t fat = 0, tissue = 0;
+    std::vector<std::size_t> near;
+    for (std::size_t v = 0; v < phantom.image.size(); ++v) {
+      const auto [i, j, k] = phantom.image.grid.subscripts(v);
+      const double apart = (phantom.image.grid.toWorld(Vector(i, j, k)) - middle).norm();
+      const double share = std::clamp(4.5 - apart, 0.0, 1.0);
+      if (phantom.image[v] <= 0) continue;
+      phantom.image[v] += static_cast<float>(share * (220 - phantom.image[v]));
+      if (apart < 6 && phantom.truth[v] == kCsf) near.push_back(v);
+      fat += share > 0.5 ? 1 : 0;
+    }
+    const TissueSegmentation found = segmentTissue(phantom.image);
+    for (const std::size_t v : near) tissue += found.labels[v] == kCsf ? 0 : 1;
+    EXPECT_LT(static_cast<double>(tissue), 0.1 * static_cast<double>(fat)) << spacing.transpose();
+    EXPECT_GT(agreement(found.labels, phantom.truth), 0.98);
+    EXPECT_NEAR(found.classes[2].mean, 115, 2) << "nor does it count as white matter";
+  }
+}
+
 /// The phantom moved by half a voxel along each axis: each voxel the mean of eight.
 Volume<float> movedByHalf(const Volume<float>& image) {
   Volume<float> moved(image.grid, 0.0f);

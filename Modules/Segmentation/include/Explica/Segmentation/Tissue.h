@@ -17,6 +17,9 @@ inline constexpr Label kCsf = 1;
 inline constexpr Label kGrey = 2;
 inline constexpr Label kWhite = 3;
 
+/// Brightness that no tissue has, over that of white matter, a T1's brightest: fat, or a vessel.
+inline constexpr double kBrighterThanTissue = 1.2;
+
 /// How three tissue classes are found in a skull-stripped T1.
 struct TissueOptions {
   double smooth = 0.8;    ///< weight of the Markov prior; 0 looks at each voxel alone
@@ -75,6 +78,8 @@ struct TissueSegmentation {
 /// put where the edges are, it counts in full, and mixtures no longer: they would explain any
 /// voxel's noise.  The bias field b is smooth and multiplicative, the least-squares one under a
 /// Gaussian window [Pham1999]: b = G * (sum_k p_k m_k y / s_k^2) / G * (sum_k p_k m_k^2 / s_k^2).
+/// What is brighter than any tissue, as the orbit's fat is, and the layer in which it shares voxels
+/// with what is dark, is taken out once classes are known, and given back as fluid.
 /// `probability` of each tissue is 0.5 at a sub-voxel border.
 /// Classes are ordered by their means, so the image must be T1-weighted.
 ///
