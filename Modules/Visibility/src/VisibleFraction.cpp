@@ -232,4 +232,22 @@ double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& face
   return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }
 
+std::vector<char> standingOver(const TriangleMesh& mesh, std::span<const std::int32_t> listed,
+                               std::span<const std::int32_t> asked, const Vector& axis) {
+  TriangleMesh below{mesh.positions, mesh.faces(listed, Eigen::all)};
+  requireInputs(below, viewpoint(axis));
+  const Point middle = mesh.corner(listed[0], 0);
+  const Occluders occluders(below, middle);
+  std::vector<char> over(asked.size());
+  parallelFor(over.size(), kGrain, [&](std::size_t n) {
+    const Point from =
+        (mesh.corner(asked[n], 0) + mesh.corner(asked[n], 1) + mesh.corner(asked[n], 2)) / 3 -
+        middle;
+    const Vector by = -axis;
+    const double length = kInfinity;
+    over[n] = occluders.clear({&from, 1}, {&by, 1}, {&length, 1}, RTC_INVALID_GEOMETRY_ID) == 0;
+  });
+  return over;
+}
+
 }  // namespace explica::visibility
