@@ -82,10 +82,11 @@ struct Continuation::Outlook {
   double visibility = kNaN;   ///< that the run is bound for, or the share seen if that is less
   double seen = kNaN;         ///< share of the region's area; only asked where enough is visible
   double aim = 1;             ///< visibility to aim at
+  bool appears = false;       ///< more is seen than a step before
   bool strongest = false;     ///< the visibility term is at its end
   /// Whether steering could still change anything.
   [[nodiscard]] bool isWeighed() const { return strongest || visibility > aim - 2 * kAccuracy; }
-  [[nodiscard]] bool rests() const { return change < kAccuracy / 2; }
+  [[nodiscard]] bool rests() const { return change < kAccuracy / 2 && !appears; }
 };
 
 Continuation::Outlook Continuation::outlook(Unfolder& unfolder,
@@ -97,7 +98,9 @@ Continuation::Outlook Continuation::outlook(Unfolder& unfolder,
   now.strongest = unfolder.state().drive >= (1 - 1e-9) * largestDrive(options_);
   const bool asks = options_.unfolder.method == Method::Implicit && !options_.targetVisibility;
   if (asks && now.visibility > now.aim - 2 * kAccuracy) {
+    const Look before = unfolder.state().look;
     now.seen = unfolder.look();
+    now.appears = before.iteration >= 0 && now.seen > before.seen + kAccuracy / 2;
     now.visibility = std::min(now.visibility, now.seen);
   }
   return now;
