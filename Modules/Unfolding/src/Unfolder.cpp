@@ -207,7 +207,6 @@ const std::vector<std::int32_t>& Unfolder::movingVertices() const {
 }
 void Unfolder::setViewpoints(visibility::Viewpoints viewpoints) {
   self_->viewpoints = std::move(viewpoints);
-  self_->state.look = {};
   PatchSetup& setup = self_->setup;
   setup.patch.room = findRoom(setup.mesh, setup.region, self_->viewpoints);
   layGuide(setup.mesh, setup.patch.room, setup.patch.guide);

@@ -352,7 +352,7 @@ TEST(Energy, ACollarThatStandsUprightIsNotTurned) {
 TEST(Energy, ACollarOverTheRegionCostsTheAreaThatItHides) {
   Sample s;
   s.multipliers.setZero();
-  for (PatchFace& face : s.patch.faces) face.overWeight = 0;
+  for (PatchFace& face : s.patch.faces) face.overWeight = face.holdWeight = 0;
   EXPECT_EQ(s.value(s.mesh.positions, only(Term::Overhang, 2)), 0) << "what stands beside it";
   PatchFace& face = s.patch.faces.back();
   face.overWeight = 3;
