@@ -116,8 +116,11 @@ Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
     return target ? Termination::Stalled : Termination::Converged;
   }
   if (unfolder.isHeldBelow()) return Termination::NotRun;
+  const bool gives =
+      options_.unfolder.surround == Surround::Elastic && last.collarStretchMax > kCollarMost;
   const bool enough =
-      !target && merit(last.visibility, last.edgeStrainMean, now.seen, options_.trade) > kAccuracy;
+      !target && !gives &&
+      merit(last.visibility, last.edgeStrainMean, now.seen, options_.trade) > kAccuracy;
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
   if (!kept || !(enough || (now.rests() && now.isWeighed()))) return Termination::NotRun;
   if (target) return reached ? Termination::TargetReached : Termination::Stalled;

@@ -95,12 +95,12 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
 void ImplicitStep::findHidingFaces() {
   const PhaseClock clock(now_.phases.visibility);
   Patch& patch = u_.setup.patch;
-  const std::vector<char> over =
+  const std::vector<float> over =
       visibility::standingOver({state_.positions, u_.setup.mesh.faces}, u_.setup.region.faces,
                                u_.setup.collar, patch.room.axis);
   for (std::size_t f = 0; f < over.size(); ++f) {
     PatchFace& face = patch.faces[patch.regionFaces + f];
-    face.overWeight = over[f] != 0 ? face.weight : 0;
+    face.overWeight = over[f] * face.weight;
   }
 }
 

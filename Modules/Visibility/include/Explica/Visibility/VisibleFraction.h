@@ -46,12 +46,12 @@ struct VisibleFraction {
 [[nodiscard]] double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                                const Viewpoints& viewpoints);
 
-/// Which of the asked faces stand over a listed one: the ray from the middle of such a face against
-/// `axis` (unit) meets a listed face.
+/// How much of each asked face stands over listed ones: the share of three rays from it against
+/// `axis` (unit), from points of its middle, that meet a listed face.
 /// @throws InvalidInput  no listed face, or a non-finite position
-[[nodiscard]] std::vector<char> standingOver(const TriangleMesh& mesh,
-                                             std::span<const std::int32_t> listed,
-                                             std::span<const std::int32_t> asked,
-                                             const Vector& axis);
+[[nodiscard]] std::vector<float> standingOver(const TriangleMesh& mesh,
+                                              std::span<const std::int32_t> listed,
+                                              std::span<const std::int32_t> asked,
+                                              const Vector& axis);
 
 }  // namespace explica::visibility
