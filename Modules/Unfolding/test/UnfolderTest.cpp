@@ -648,7 +648,7 @@ TEST(Unfold, AHairOfTheCollarIsNeitherBlownUpNorInTheWay) {
   const UnfoldResult result = unfold(c.mesh, c.bare.region, c.bare.view);
   const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
   EXPECT_LE(end.collarStretchMax, kCollarMost);
-  EXPECT_NEAR(end.visibility, bare.history.back().visibility, 0.003);
+  EXPECT_NEAR(end.visibility, bare.history.back().visibility, 0.005);
   EXPECT_LT(result.history.size(), 2.5 * static_cast<double>(bare.history.size()));
   EXPECT_TRUE(geometry::findSelfIntersections(result.mesh).empty());
 }

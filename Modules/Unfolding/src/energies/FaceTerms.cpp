@@ -120,14 +120,13 @@ struct LiftOfFace {
   }
 };
 
-/// strength * sum over the collar's faces of o h(-n . a), a the room's axis,
-/// h(t) = sqrt(t^2 + kUpright^2) - kUpright of t > 0, else 0.
+/// strength * sum over the collar's faces of o max(0, -n . a)^2, a the room's axis.
 ///
 /// A fold of the collar that stands over the region hides as much of it as its underside is wide
-/// across the view, o |n . a|: that costs what as much area turned away does.
+/// across the view, o |n . a|.  One that lies over the region costs what as much area turned away
+/// does, one that stands upright nothing.
 struct OverhangOfFace {
   static constexpr bool kOfCollar = true;
-  static constexpr double kUpright = 0.1;  // faces that lean less hide next to nothing
 
   /// How far a face looks away, -n . a; 0 where it hides nothing.
   static double awayOf(const Configuration& now, std::size_t f) {
@@ -135,13 +134,12 @@ struct OverhangOfFace {
     return std::max(0.0, -now.shapes[f].normal.dot(now.patch.room.axis));
   }
   static double slopeOf(const Configuration& now, std::size_t f, double strength) {
-    const double away = awayOf(now, f);
-    return strength * now.patch.faces[f].overWeight * away / std::hypot(away, kUpright);
+    return 2 * strength * now.patch.faces[f].overWeight * awayOf(now, f);
   }
 
   static double value(const Configuration& now, std::size_t f, double strength) {
-    return strength * now.patch.faces[f].overWeight *
-           (std::hypot(awayOf(now, f), kUpright) - kUpright);
+    const double away = awayOf(now, f);
+    return strength * now.patch.faces[f].overWeight * away * away;
   }
   static CornerForces forces(const Configuration& now, std::size_t f, double strength) {
     CornerForces forces = {Vector::Zero(), Vector::Zero(), Vector::Zero()};
