@@ -144,7 +144,7 @@ UnfoldOptions inTheFlask() {
 }
 
 TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
-  const Flask flask(6, 0.3);
+  const Flask flask(8, 0.4);
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
   const auto view = visibility::viewpoint(Point(0, 0, 1000));
   const UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
@@ -166,7 +166,7 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
 }
 
 TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
-  const Flask flask(6, 0.3);
+  const Flask flask(8, 0.4);
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
   const auto view = visibility::viewpoint(Point(0, 0, 1000));
   UnfoldOptions options = inTheFlask();
