@@ -11,7 +11,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr int kWindow = 10;             // iterations in which a run at rest changes by half of that
+constexpr int kWindow = 10;  // iterations in which a run at rest changes by half of kAccuracy
 constexpr double kMostSteering = 1.15;  // factor of the visibility term a step
 
 void requireUsable(const UnfoldOptions& options) {
@@ -58,17 +58,6 @@ double largestDrive(const UnfoldOptions& options) {
   return options.trade * options.unfolder.weights[Term::Spring] * slope;
 }
 
-/// True if too little of the region is seen, but more from one look to the next.
-bool isStillAppearing(Unfolder& unfolder) {
-  const Look before = unfolder.state().look;
-  const bool looked = before.iteration >= 0;
-  if (looked && unfolder.state().iteration - before.iteration < kWindow / 2) {
-    return before.seen < kGoalSeen;
-  }
-  const double seen = unfolder.look();
-  return seen < kGoalSeen && (!looked || seen > before.seen + kAccuracy);
-}
-
 }  // namespace
 
 double aimAt(const UnfoldOptions& options, double strain) {
@@ -90,21 +79,30 @@ Continuation::Continuation(const UnfoldOptions& options) : options_(options) {
 struct Continuation::Outlook {
   const IterationRecord& last;
   double change = kInfinity;  ///< over the window, of visibility or what strain is worth
-  double visibility = kNaN;   ///< that the run is bound for
+  double visibility = kNaN;   ///< that the run is bound for, or the share seen if that is less
+  double seen = kNaN;         ///< share of the region's area; only asked where enough is visible
   double aim = 1;             ///< visibility to aim at
+  bool appears = false;       ///< more is seen than a step before
   bool strongest = false;     ///< the visibility term is at its end
   /// Whether steering could still change anything.
   [[nodiscard]] bool isWeighed() const { return strongest || visibility > aim - 2 * kAccuracy; }
-  [[nodiscard]] bool rests() const { return change < kAccuracy / 2; }
+  [[nodiscard]] bool rests() const { return change < kAccuracy / 2 && !appears; }
 };
 
-Continuation::Outlook Continuation::outlook(const Unfolder& unfolder,
+Continuation::Outlook Continuation::outlook(Unfolder& unfolder,
                                             const std::vector<IterationRecord>& history) const {
   Outlook now{history.back()};
   now.change = changeOver(history, unfolder.state().driveIteration, options_);
   now.visibility = limitOf(history, &IterationRecord::visibility);
   now.aim = aimAt(options_, limitOf(history, &IterationRecord::edgeStrainMean));
   now.strongest = unfolder.state().drive >= (1 - 1e-9) * largestDrive(options_);
+  const bool asks = options_.unfolder.method == Method::Implicit && !options_.targetVisibility;
+  if (asks && now.visibility > now.aim - 2 * kAccuracy) {
+    const Look before = unfolder.state().look;
+    now.seen = unfolder.look();
+    now.appears = before.iteration >= 0 && now.seen > before.seen + kAccuracy / 2;
+    now.visibility = std::min(now.visibility, now.seen);
+  }
   return now;
 }
 
@@ -118,12 +116,15 @@ Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
     return target ? Termination::Stalled : Termination::Converged;
   }
   if (unfolder.isHeldBelow()) return Termination::NotRun;
+  const bool gives =
+      options_.unfolder.surround == Surround::Elastic && last.collarStretchMax > kCollarMost;
   const bool enough =
-      !target && merit(last.visibility, last.edgeStrainMean, kNaN, options_.trade) > kAccuracy;
+      !target && !gives &&
+      merit(last.visibility, last.edgeStrainMean, now.seen, options_.trade) > kAccuracy;
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
   if (!kept || !(enough || (now.rests() && now.isWeighed()))) return Termination::NotRun;
   if (target) return reached ? Termination::TargetReached : Termination::Stalled;
-  return isStillAppearing(unfolder) ? Termination::NotRun : Termination::Converged;
+  return Termination::Converged;
 }
 
 void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {

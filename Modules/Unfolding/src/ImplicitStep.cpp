@@ -6,6 +6,7 @@
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/PhaseClock.h"
+#include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,6 +44,7 @@ class ImplicitStep {
   bool take();
 
  private:
+  void findHidingFaces();
   bool attempt();
   template <class Other>
   void orderBeside(const Other& other);
@@ -74,6 +76,7 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
     const PhaseClock clock(now_.phases.collision);
     contacts_ = u_.contacts.within(state_.positions);
   }
+  if (u_.options.surround == Surround::Elastic) findHidingFaces();
   couplings_ = u_.setup.couplings;
   for (const Contact& contact : contacts_) {
     for (int i = 0; i < 4; ++i) {
@@ -86,6 +89,19 @@ ImplicitStep::ImplicitStep(Unfolder::Implementation& unfolder)
   }
   orderBeside([this] { differentiate(); });
   filled_ = true;
+}
+
+/// Which faces of the collar stand over the region; they stay those until the step is taken.
+void ImplicitStep::findHidingFaces() {
+  const PhaseClock clock(now_.phases.visibility);
+  Patch& patch = u_.setup.patch;
+  const std::vector<float> over =
+      visibility::standingOver({state_.positions, u_.setup.mesh.faces}, u_.setup.region.faces,
+                               u_.setup.collar, patch.room.axis);
+  for (std::size_t f = 0; f < over.size(); ++f) {
+    PatchFace& face = patch.faces[patch.regionFaces + f];
+    face.overWeight = over[f] * face.weight;
+  }
 }
 
 /// The order of elimination asks for couplings alone: it is found while `other` fills the system.

@@ -20,7 +20,7 @@ struct PatchFace {
   double restArea = 0;    ///< A0, mm^2, > 0
   double weight = 0;      ///< w, mm^2: the rest area, less for needles
   double holdWeight = 0;  ///< h, mm^2: the rest area, more for needles, whose ratio is bounded too
-  double nearWeight = 0;  ///< o, mm^2: of a collar's face, the weight beside the region, less away
+  double overWeight = 0;  ///< o, mm^2: w of a collar's face that stands over the region, else 0
 };
 
 /// An edge of such faces.

@@ -100,26 +100,19 @@ void chooseMoving(PatchSetup& s, const visibility::Viewpoints& viewpoints,
     s.collarWidth = options.collarWidth.value_or(kCollarShare *
                                                  std::max(s.patch.room.radius, s.patch.room.depth));
   }
-  s.reach = reachOf(s, options.surround);
-  for (std::int32_t v = 0; v < s.reach.size(); ++v) {
-    if (std::isfinite(s.reach[v])) s.moving.push_back(v);
+  const Eigen::VectorXd reach = reachOf(s, options.surround);
+  for (std::int32_t v = 0; v < reach.size(); ++v) {
+    if (std::isfinite(reach[v])) s.moving.push_back(v);
   }
-  s.unknown.assign(static_cast<std::size_t>(s.reach.size()), -1);
+  s.unknown.assign(static_cast<std::size_t>(reach.size()), -1);
   for (std::size_t i = 0; i < s.moving.size(); ++i) {
     s.unknown[s.moving[i]] = static_cast<std::int32_t>(i);
   }
   s.collar = collarFaces(s);
 }
 
-/// 1 for a face of the collar at the region's rim, falling to 0 at the collar's end.
-double nearness(const PatchSetup& s, std::int32_t f) {
-  double reach = 0;
-  for (int k = 0; k < 3; ++k) reach += std::min(s.collarWidth, s.reach[s.mesh.faces(f, k)]) / 3;
-  return std::max(0.0, 1 - reach / s.collarWidth);
-}
-
-/// Faces of an elastic collar hold back when they stretch far, and shall not lean over the region;
-/// a single ring beside fixed surroundings has no other way to follow.
+/// Faces of an elastic collar hold back when they stretch far; a single ring beside fixed
+/// surroundings has no other way to follow.
 void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
   const double mean = s.area / static_cast<double>(s.region.faces.size());
   const double needle = kNeedleShare * mean;
@@ -134,10 +127,8 @@ void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
   s.patch.regionFaces = s.region.faces.size();
   for (const std::int32_t f : s.collar) {
     list(f);
-    if (!(s.collarWidth > 0)) continue;
     PatchFace& face = s.patch.faces.back();
-    face.holdWeight = face.restArea + kHoldShare * mean;
-    if (areas[f] > 0) face.nearWeight = nearness(s, f) * face.weight;
+    if (s.collarWidth > 0) face.holdWeight = face.restArea + kHoldShare * mean;
   }
 }
 

@@ -19,8 +19,6 @@ struct PatchSetup {
   double edge = 0;                    ///< mean edge length of the region, mm
   double area = 0;                    ///< of the region, mm^2
   double collarWidth = 0;             ///< of an elastic collar, mm along the surface
-  Eigen::VectorXd reach;              ///< V: mm along the surface from the region; infinity of what
-                                      ///< stays
   std::vector<std::int32_t> collar;   ///< faces outside the region with a vertex that moves
   Patch patch;
   Couplings couplings;  ///< of the unknowns that share an edge

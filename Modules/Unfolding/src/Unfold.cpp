@@ -61,14 +61,12 @@ bool isWorse(const IterationRecord& state, const BestState& than, const UnfoldOp
 }
 
 /// Share of the region that is seen in the present state, if anybody has begun to ask.
-double seenIfAsked(const Unfolder& unfolder) {
-  const Look& look = unfolder.state().look;
-  if (look.iteration < 0) return kNaN;
-  return look.iteration == unfolder.state().iteration ? look.seen : unfolder.seenShare();
+double seenIfAsked(Unfolder& unfolder) {
+  return unfolder.state().look.iteration < 0 ? kNaN : unfolder.look();
 }
 
 /// Takes note of a state if it keeps areas and is better than all before.
-void consider(const Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
+void consider(Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
   const IterationRecord& now = unfolder.record();
   if (now.areaErrorMean > options.areaTolerance) return;
   const double seen = seenIfAsked(unfolder);
@@ -87,7 +85,7 @@ void considerLook(const Unfolder& unfolder, bool isFirst, BestState& best) {
 
 /// The state to give back: the last, or the best seen if the last is worse.
 /// @return the share seen of its region's area
-double chooseState(const Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
+double chooseState(Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
                    const BestState& best, const UnfoldOptions& options, UnfoldResult& result) {
   result.mesh = unfolder.current();
   result.iteration = unfolder.state().iteration;

@@ -60,6 +60,7 @@ void Unfolder::Implementation::makeKnot(const Positions& positions) {
 TermValues Unfolder::Implementation::strengths() const {
   TermValues strengths = options.weights;
   strengths[Term::Visibility] = state.drive;
+  strengths[Term::Overhang] *= state.drive;
   strengths[Term::Area] = state.areaStiffness;
   strengths[Term::Lift] *= state.lift;
   if (options.surround == Surround::None) strengths[Term::Lift] = 0;
@@ -160,8 +161,9 @@ double Unfolder::seenShare() const {
   return visibility::seenShare(current(), self_->setup.region.faces, self_->viewpoints);
 }
 double Unfolder::look() {
-  self_->state.look = {self_->state.iteration, seenShare()};
-  return self_->state.look.seen;
+  Look& look = self_->state.look;
+  if (look.iteration != self_->state.iteration) look = {self_->state.iteration, seenShare()};
+  return look.seen;
 }
 const UnfoldState& Unfolder::state() const {
   return self_->state;

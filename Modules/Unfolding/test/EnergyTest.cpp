@@ -349,6 +349,18 @@ TEST(Energy, ACollarThatStandsUprightIsNotTurned) {
   EXPECT_EQ(s.gradient(only(Term::Overhang, 1)).norm(), 0);
 }
 
+TEST(Energy, ACollarOverTheRegionCostsTheAreaThatItHides) {
+  Sample s;
+  s.multipliers.setZero();
+  for (PatchFace& face : s.patch.faces) face.overWeight = face.holdWeight = 0;
+  EXPECT_EQ(s.value(s.mesh.positions, only(Term::Overhang, 2)), 0) << "what stands beside it";
+  PatchFace& face = s.patch.faces.back();
+  face.overWeight = 3;
+  s.patch.room.axis = -shapeOf(face, s.mesh.positions).normal;  // its underside is seen
+  const double all = s.value(s.mesh.positions, only(Term::Overhang, 2));
+  EXPECT_NEAR(all, 2 * 3, 1e-9) << "strength and area";
+}
+
 TEST(Energy, ALengthCostsItsSquareAtFirstAndInProportionFarOff) {
   Positions x = Positions::Zero(2, 3);
   x(1, 0) = 1;

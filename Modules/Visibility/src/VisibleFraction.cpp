@@ -231,4 +231,30 @@ double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& face
   return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }
 
+std::vector<float> standingOver(const TriangleMesh& mesh, std::span<const std::int32_t> listed,
+                                std::span<const std::int32_t> asked, const Vector& axis) {
+  TriangleMesh below{mesh.positions, mesh.faces(listed, Eigen::all)};
+  requireInputs(below, viewpoint(axis));
+  const Point middle = mesh.corner(listed[0], 0);
+  const Occluders occluders(below, middle);
+  std::vector<float> over(asked.size());
+  parallelFor(over.size(), kGrain, [&](std::size_t n) {
+    std::array<Point, 3> from;
+    for (int k = 0; k < 3; ++k) {
+      from[k] = (4 * mesh.corner(asked[n], k) + mesh.corner(asked[n], (k + 1) % 3) +
+                 mesh.corner(asked[n], (k + 2) % 3)) /
+                    6 -
+                middle;
+    }
+    std::array<Vector, 3> by;
+    by.fill(-axis);
+    std::array<double, 3> length;
+    length.fill(kInfinity);
+    over[n] = 1 - static_cast<float>(
+                      std::popcount(occluders.clear(from, by, length, RTC_INVALID_GEOMETRY_ID))) /
+                      3;
+  });
+  return over;
+}
+
 }  // namespace explica::visibility

@@ -122,35 +122,38 @@ struct LiftOfFace {
 
 /// strength * sum over the collar's faces of o max(0, -n . a)^2, a the room's axis.
 ///
-/// A collar that leans over the region hides it, and has faces that look away where it turns back:
-/// these are turned until they stand upright.
+/// A fold of the collar that stands over the region hides as much of it as its underside is wide
+/// across the view, o |n . a|.  One that lies over the region costs what as much area turned away
+/// does, one that stands upright nothing.
 struct OverhangOfFace {
   static constexpr bool kOfCollar = true;
 
-  /// How far a face looks away, -n . a; 0 without a say.
+  /// How far a face looks away, -n . a; 0 where it hides nothing.
   static double awayOf(const Configuration& now, std::size_t f) {
-    if (!(now.patch.faces[f].nearWeight > 0)) return 0;
+    if (!(now.patch.faces[f].overWeight > 0)) return 0;
     return std::max(0.0, -now.shapes[f].normal.dot(now.patch.room.axis));
+  }
+  static double slopeOf(const Configuration& now, std::size_t f, double strength) {
+    return 2 * strength * now.patch.faces[f].overWeight * awayOf(now, f);
   }
 
   static double value(const Configuration& now, std::size_t f, double strength) {
     const double away = awayOf(now, f);
-    return strength * now.patch.faces[f].nearWeight * away * away;
+    return strength * now.patch.faces[f].overWeight * away * away;
   }
   static CornerForces forces(const Configuration& now, std::size_t f, double strength) {
     CornerForces forces = {Vector::Zero(), Vector::Zero(), Vector::Zero()};
-    const double away = awayOf(now, f);
-    if (!(away > 0)) return forces;  // of a face without area the normal is not a number
+    const double slope = slopeOf(now, f, strength);
+    if (!(slope > 0)) return forces;  // of a face without area the normal is not a number
     const FaceShape& shape = now.shapes[f];
-    const double scale = 2 * strength * now.patch.faces[f].nearWeight * away;
     for (int k = 0; k < 3; ++k) {
-      forces[k] = scale * shape.hat[k].dot(now.patch.room.axis) * shape.normal;
+      forces[k] = slope * shape.hat[k].dot(now.patch.room.axis) * shape.normal;
     }
     return forces;
   }
   /// The stiffness of tension across the surface.
   static FaceStiffness stiffness(const Configuration& now, std::size_t f, double strength) {
-    return {0, 2 * strength * now.patch.faces[f].nearWeight * awayOf(now, f)};
+    return {0, slopeOf(now, f, strength)};
   }
 };
 

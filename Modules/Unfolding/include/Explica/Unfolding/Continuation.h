@@ -45,7 +45,7 @@ class Continuation {
 
  private:
   struct Outlook;
-  [[nodiscard]] Outlook outlook(const Unfolder& unfolder,
+  [[nodiscard]] Outlook outlook(Unfolder& unfolder,
                                 const std::vector<IterationRecord>& history) const;
   [[nodiscard]] Termination endOf(Unfolder& unfolder, const Outlook& now) const;
   void steer(Unfolder& unfolder, const Outlook& now) const;

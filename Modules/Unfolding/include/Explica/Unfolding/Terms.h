@@ -25,7 +25,7 @@ enum class Term {
   Lift,      ///< weight/2 times the sum of w (deficit / radius)^2, deficit from where it has room
   Guide,     ///< weight times the sum over vertices of a h(way to the vertex's place in a flat map)
   Collar,    ///< weight times the sum over faces that move outside the region, see CollarEnergy
-  Overhang,  ///< weight times the sum over those faces of o max(0, -n . d)^2, o near the region
+  Overhang,  ///< weight times the sum of what such faces that stand over the region hide of it
   Contact,   ///< weight times the sum over near pairs of barrier(distance), see ContactPotential
   Knot       ///< weight times the double integral of 1 / |x - y|^2, see KnotEnergy
 };
@@ -41,14 +41,10 @@ struct TermInfo {
 };
 
 inline constexpr std::array kTerms = {
-    TermInfo{Term::Visibility, "visibility", 1},
-    TermInfo{Term::Area, "area", 20},
-    TermInfo{Term::Spring, "spring", 60},
-    TermInfo{Term::Lift, "lift", 60, false},
-    TermInfo{Term::Guide, "guide", 100, false},
-    TermInfo{Term::Collar, "collar", 2e-4, false},
-    TermInfo{Term::Overhang, "overhang", 0.3, false},
-    TermInfo{Term::Contact, "contact", 0.2},
+    TermInfo{Term::Visibility, "visibility", 1},    TermInfo{Term::Area, "area", 20},
+    TermInfo{Term::Spring, "spring", 60},           TermInfo{Term::Lift, "lift", 60, false},
+    TermInfo{Term::Guide, "guide", 100, false},     TermInfo{Term::Collar, "collar", 2e-4, false},
+    TermInfo{Term::Overhang, "overhang", 1, false}, TermInfo{Term::Contact, "contact", 0.2},
     TermInfo{Term::Knot, "knot", 3e-4, false},
 };
 inline constexpr std::size_t kTermCount = kTerms.size();

@@ -5,6 +5,9 @@
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Visibility/Viewpoints.h"
 
+#include <span>
+#include <vector>
+
 namespace explica::visibility {
 
 struct VisibleFractionOptions {
@@ -42,5 +45,13 @@ struct VisibleFraction {
 /// @throws InvalidInput  as visibleFraction
 [[nodiscard]] double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                                const Viewpoints& viewpoints);
+
+/// How much of each asked face stands over listed ones: the share of three rays from it against
+/// `axis` (unit), from points of its middle, that meet a listed face.
+/// @throws InvalidInput  no listed face, or a non-finite position
+[[nodiscard]] std::vector<float> standingOver(const TriangleMesh& mesh,
+                                              std::span<const std::int32_t> listed,
+                                              std::span<const std::int32_t> asked,
+                                              const Vector& axis);
 
 }  // namespace explica::visibility
