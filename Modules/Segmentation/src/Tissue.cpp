@@ -37,9 +37,10 @@ constexpr int kPriorRounds = 4;         // for the neighbours to agree
 // Of the prior's weight, while classes are estimated: shares that have been smoothed hide the
 // spread of what they came from.
 constexpr double kWhileEstimated = 0.125;
-constexpr double kLocalBlocks = 2;  // of the local windows' width
-constexpr double kDark = 1.0 / 3;   // of the darkest class, in which fluid and grey matter mix
-constexpr double kBeyondNoise = 4;  // deviations
+constexpr double kLocalBlocks = 2;   // of the local windows' width
+constexpr double kDark = 1.0 / 3;    // of the darkest class, in which fluid and grey matter mix
+constexpr int kFirstIterations = 3;  // until the classes are where they belong
+constexpr double kBeyondNoise = 4;   // deviations
 constexpr std::int32_t kNone = -1, kRemains = -2;  // neighbours that are not in the brain
 
 /// Fluid, grey, white, and the voxels where two of them meet.
@@ -618,25 +619,6 @@ class Classifier {
   std::vector<Shares> shares_;
 };
 
-/// Estimates the classes until they rest, a stop is asked for or the iterations are used up.
-void estimate(Classifier& classifier, const TissueOptions& options, const Monitor& monitor,
-              TissueSegmentation& result) {
-  result.termination = Termination::MaxIterations;
-  for (int iteration = 0; iteration < options.maxIterations; ++iteration) {
-    if (monitor.shouldStop()) {
-      result.termination = Termination::Interrupted;
-      return;
-    }
-    monitor.progress(static_cast<double>(iteration) / options.maxIterations, "tissue classes");
-    const double moved = classifier.iterate();
-    ++result.iterations;
-    if (iteration > 2 && moved <= options.tolerance) {
-      result.termination = Termination::Converged;
-      return;
-    }
-  }
-}
-
 }  // namespace
 
 TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<Label>& mask,
@@ -653,11 +635,24 @@ TissueSegmentation segmentTissue(const Volume<float>& intensity, const Volume<La
   }
   TissueSegmentation result;
   result.brainVoxels = static_cast<std::int64_t>(brain.size());
+  result.termination = Termination::MaxIterations;
   std::vector<std::size_t> remains;
   if (mask.size() == 0) takeOut(darkRemains(intensity.grid, brain), brain, remains);
   Classifier classifier(intensity.grid, std::move(brain), options);
-  estimate(classifier, options, monitor, result);
-  if (classifier.takeOutBright(remains)) estimate(classifier, options, monitor, result);
+  while (result.iterations < options.maxIterations) {
+    if (monitor.shouldStop()) {
+      result.termination = Termination::Interrupted;
+      break;
+    }
+    monitor.progress(static_cast<double>(result.iterations) / options.maxIterations,
+                     "tissue classes");
+    const double moved = classifier.iterate();
+    if (++result.iterations <= kFirstIterations) continue;
+    if (!classifier.takeOutBright(remains) && moved <= options.tolerance) {
+      result.termination = Termination::Converged;
+      break;
+    }
+  }
   if (options.localWidth > 0 && !monitor.shouldStop()) classifier.followEdges();
   classifier.write(remains, result);
   monitor.progress(1, "tissue classes");
