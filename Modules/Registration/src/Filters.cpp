@@ -27,14 +27,18 @@ Lines linesAlong(const Grid& grid, int axis) {
 }
 
 /// Replaces each line of the volume by what `filter` makes of it.
+/// @param margin  values before and after the line that the filter is given: those at its ends
 template <class Filter>
-void filterLines(Volume<float>& volume, int axis, const Filter& filter) {
+void filterLines(Volume<float>& volume, int axis, int margin, const Filter& filter) {
   const Lines lines = linesAlong(volume.grid, axis);
   parallelForBlocks(lines.count, 512, [&](std::size_t first, std::size_t last) {
-    std::vector<float> in(static_cast<std::size_t>(lines.length)), out(in.size());
+    std::vector<float> in(static_cast<std::size_t>(lines.length + 2 * margin));
+    std::vector<float> out(static_cast<std::size_t>(lines.length));
     for (std::size_t l = first; l < last; ++l) {
       float* start = volume.data.data() + lines.begin(l);
-      for (int s = 0; s < lines.length; ++s) in[s] = start[s * lines.stride];
+      for (int s = 0; s < lines.length; ++s) in[margin + s] = start[s * lines.stride];
+      std::fill_n(in.begin(), margin, start[0]);
+      std::fill_n(in.end() - margin, margin, start[(lines.length - 1) * lines.stride]);
       filter(in, out);
       for (int s = 0; s < lines.length; ++s) start[s * lines.stride] = out[s];
     }
@@ -60,14 +64,10 @@ Volume<float> smoothed(Volume<float> volume, double sigma) {
     if (inVoxels < 0.2 || volume.grid.size[axis] == 1) continue;
     const std::vector<float> kernel = gaussian(inVoxels);
     const int radius = static_cast<int>(kernel.size() / 2);
-    filterLines(volume, axis, [&](const std::vector<float>& in, std::vector<float>& out) {
-      const int length = static_cast<int>(in.size());
-      for (int s = 0; s < length; ++s) {
-        float sum = 0;
-        for (int r = -radius; r <= radius; ++r) {
-          sum += kernel[r + radius] * in[std::clamp(s + r, 0, length - 1)];
-        }
-        out[s] = sum;
+    filterLines(volume, axis, radius, [&](const std::vector<float>& in, std::vector<float>& out) {
+      std::fill(out.begin(), out.end(), 0.0F);
+      for (std::size_t r = 0; r < kernel.size(); ++r) {
+        for (std::size_t s = 0; s < out.size(); ++s) out[s] += kernel[r] * in[s + r];
       }
     });
   }
@@ -76,7 +76,7 @@ Volume<float> smoothed(Volume<float> volume, double sigma) {
 
 Volume<float> boxMean(Volume<float> volume, int radius) {
   for (int axis = 0; axis < 3; ++axis) {
-    filterLines(volume, axis, [radius](const std::vector<float>& in, std::vector<float>& out) {
+    filterLines(volume, axis, 0, [radius](const std::vector<float>& in, std::vector<float>& out) {
       const int length = static_cast<int>(in.size());
       double sum = 0;
       for (int s = 0; s < std::min(radius, length); ++s) sum += in[s];

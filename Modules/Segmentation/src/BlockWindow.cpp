@@ -13,6 +13,25 @@ namespace {
 constexpr std::size_t kWindowGrain = 16384;  // elements a task
 constexpr std::size_t kLineGrain = 256;      // elements a task
 
+/// Subscripts of voxels, one after the other; those in a row take no division.
+class Walk {
+ public:
+  explicit Walk(const Grid& grid) : grid_(grid) {}
+  const std::array<int, 3>& to(std::size_t voxel) {
+    if (voxel - row_ >= static_cast<std::size_t>(grid_.size[0])) {
+      at_ = grid_.subscripts(voxel);
+      row_ = voxel - static_cast<std::size_t>(at_[0]);
+    }
+    at_[0] = static_cast<int>(voxel - row_);
+    return at_;
+  }
+
+ private:
+  const Grid& grid_;
+  std::size_t row_ = 0;
+  std::array<int, 3> at_{};
+};
+
 }  // namespace
 
 BlockWindow::BlockWindow(const Grid& grid, const std::vector<std::size_t>& voxel, double width,
@@ -31,6 +50,11 @@ BlockWindow::BlockWindow(const Grid& grid, const std::vector<std::size_t>& voxel
     step_[a] = std::clamp(static_cast<int>(std::lround(width / blocksPerWidth / grid.spacing[a])),
                           1, length);
     size_[a] = (length + step_[a] - 1) / step_[a];
+    for (int at = 0; at < length; ++at) {
+      const double x = std::clamp((at + 0.5) / step_[a] - 0.5, 0.0, size_[a] - 1.0);
+      const int low = static_cast<int>(x);
+      places_[a].push_back({at / step_[a], low, std::min(low + 1, size_[a] - 1), x - low});
+    }
   }
 }
 
@@ -71,10 +95,10 @@ void BlockWindow::smoothAlong(std::vector<double>& values, int axis) const {
 std::vector<double> BlockWindow::sums(const std::vector<std::size_t>& voxel,
                                       const std::vector<float>& values) const {
   std::vector<double> sums(count(), 0.0);
+  Walk walk(grid_);
   for (std::size_t s = 0; s < voxel.size(); ++s) {
-    const auto at = grid_.subscripts(voxel[s]);
-    sums[linear((at[0] - first_[0]) / step_[0], (at[1] - first_[1]) / step_[1],
-                (at[2] - first_[2]) / step_[2])] += values[s];
+    const auto& at = walk.to(voxel[s]);
+    sums[linear(placeOf(at, 0).block, placeOf(at, 1).block, placeOf(at, 2).block)] += values[s];
   }
   for (int a = 0; a < 3; ++a) {
     if (size_[a] > 1) smoothAlong(sums, a);
@@ -85,26 +109,20 @@ std::vector<double> BlockWindow::sums(const std::vector<std::size_t>& voxel,
 std::vector<float> BlockWindow::atVoxels(const std::vector<double>& values,
                                          const std::vector<std::size_t>& voxel) const {
   std::vector<float> result(voxel.size());
-  parallelFor(voxel.size(), kWindowGrain, [&](std::size_t s) {
-    const auto at = grid_.subscripts(voxel[s]);
-    std::array<int, 3> low;
-    std::array<int, 3> high;
-    std::array<double, 3> share;
-    for (int a = 0; a < 3; ++a) {
-      const double x = std::clamp((at[a] - first_[a] + 0.5) / step_[a] - 0.5, 0.0, size_[a] - 1.0);
-      low[a] = static_cast<int>(x);
-      high[a] = std::min(low[a] + 1, size_[a] - 1);
-      share[a] = x - low[a];
+  parallelForBlocks(voxel.size(), kWindowGrain, [&](std::size_t begin, std::size_t end) {
+    Walk walk(grid_);
+    for (std::size_t s = begin; s < end; ++s) {
+      const auto& at = walk.to(voxel[s]);
+      const Place &x = placeOf(at, 0), &y = placeOf(at, 1), &z = placeOf(at, 2);
+      double sum = 0;
+      for (int c = 0; c < 8; ++c) {
+        sum += ((c & 1) != 0 ? x.share : 1 - x.share) * ((c & 2) != 0 ? y.share : 1 - y.share) *
+               ((c & 4) != 0 ? z.share : 1 - z.share) *
+               values[linear((c & 1) != 0 ? x.high : x.low, (c & 2) != 0 ? y.high : y.low,
+                             (c & 4) != 0 ? z.high : z.low)];
+      }
+      result[s] = static_cast<float>(sum);
     }
-    double sum = 0;
-    for (int c = 0; c < 8; ++c) {
-      const int i = (c & 1) != 0 ? high[0] : low[0];
-      const int j = (c & 2) != 0 ? high[1] : low[1];
-      const int k = (c & 4) != 0 ? high[2] : low[2];
-      sum += ((c & 1) != 0 ? share[0] : 1 - share[0]) * ((c & 2) != 0 ? share[1] : 1 - share[1]) *
-             ((c & 4) != 0 ? share[2] : 1 - share[2]) * values[linear(i, j, k)];
-    }
-    result[s] = static_cast<float>(sum);
   });
   return result;
 }

@@ -31,6 +31,15 @@ class BlockWindow {
                                             const std::vector<std::size_t>& voxel) const;
 
  private:
+  /// Where a voxel of the box lies along an axis.
+  struct Place {
+    int block;      ///< that it is in
+    int low, high;  ///< those between whose centres it lies
+    double share;   ///< of the higher one
+  };
+  [[nodiscard]] const Place& placeOf(const std::array<int, 3>& at, int axis) const {
+    return places_[axis][at[axis] - first_[axis]];
+  }
   [[nodiscard]] std::size_t linear(int i, int j, int k) const;
   void smoothAlong(std::vector<double>& values, int axis) const;
 
@@ -39,6 +48,7 @@ class BlockWindow {
   std::array<int, 3> first_;  ///< voxel of the box
   std::array<int, 3> step_;   ///< voxels a block
   std::array<int, 3> size_;   ///< blocks
+  std::array<std::vector<Place>, 3> places_;
 };
 
 }  // namespace explica::segmentation
