@@ -15,9 +15,36 @@ namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();  // no voxel of the set anywhere
 
+/// What a line needs to work in.
+struct Line {
+  explicit Line(int length) : f(length), out(length), site(length), border(length) {}
+  std::vector<float> f, out;
+  std::vector<int> site;
+  std::vector<double> border;
+};
+
+/// Squared distances along one line to where it is 0, in place; it is 0 or kFar.
+void nearestOf(Line& line, double h) {
+  std::vector<float>& f = line.f;
+  const int n = static_cast<int>(f.size());
+  int steps = n;
+  const auto pass = [&](int p) {
+    steps = f[p] == 0 ? 0 : std::min(steps + 1, n);
+    line.site[p] = std::min(line.site[p], steps);
+  };
+  std::ranges::fill(line.site, n);
+  for (int p = 0; p < n; ++p) pass(p);
+  steps = n;
+  for (int p = n - 1; p >= 0; --p) pass(p);
+  for (int p = 0; p < n; ++p) {
+    const double d = h * line.site[p];
+    if (line.site[p] < n) f[p] = static_cast<float>(d * d);
+  }
+}
+
 /// Lower envelope of the parabolas f[q] + (h (p - q))^2 along one line, in place.
-void envelope(std::vector<float>& f, double h, std::vector<int>& site,
-              std::vector<double>& border) {
+void envelope(Line& line, double h) {
+  auto& [f, out, site, border] = line;
   const int n = static_cast<int>(f.size());
   int count = 0;
   for (int q = 0; q < n; ++q) {
@@ -37,7 +64,6 @@ void envelope(std::vector<float>& f, double h, std::vector<int>& site,
     ++count;
   }
   if (count == 0) return;
-  std::vector<float> out(f.size());
   int current = 0;
   for (int p = 0; p < n; ++p) {
     while (current + 1 < count && border[current + 1] <= p) ++current;
@@ -60,14 +86,12 @@ Volume<float> squaredDistanceTo(const VoxelSet& set) {
     const int length = grid.size[axis];
     const std::size_t lines = grid.voxelCount() / static_cast<std::size_t>(length);
     parallelForBlocks(lines, 512, [&](std::size_t begin, std::size_t end) {
-      std::vector<float> line(length);
-      std::vector<int> site(length);
-      std::vector<double> border(length);
+      Line line(length);
       for (std::size_t l = begin; l < end; ++l) {
         const std::size_t start = (l / stride) * stride * length + l % stride;
-        for (int p = 0; p < length; ++p) line[p] = squared[start + p * stride];
-        envelope(line, grid.spacing[axis], site, border);
-        for (int p = 0; p < length; ++p) squared[start + p * stride] = line[p];
+        for (int p = 0; p < length; ++p) line.f[p] = squared[start + p * stride];
+        axis == 0 ? nearestOf(line, grid.spacing[axis]) : envelope(line, grid.spacing[axis]);
+        for (int p = 0; p < length; ++p) squared[start + p * stride] = line.f[p];
       }
     });
     stride *= static_cast<std::size_t>(length);
