@@ -141,6 +141,32 @@ TEST(VisibleFraction, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.vertex, four.vertex);
 }
 
+TEST(StandingOver, IsTheShareOfAFaceAboveListedOnes) {
+  // A unit square, far from the origin, and triangles above it, half above, beside and below.
+  TriangleMesh mesh;
+  mesh.positions.resize(16, 3);
+  mesh.positions.topRows(4) << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0;
+  const std::array<Point, 4> at = {Point(0.2, 0.2, 1), Point(0.8, 0.3, 1), Point(2, 0.2, 1),
+                                   Point(0.2, 0.2, -1)};
+  mesh.faces.resize(6, 3);
+  mesh.faces.topRows(2) << 0, 1, 2, 0, 2, 3;
+  for (int t = 0; t < 4; ++t) {
+    const Point corners[3] = {at[t], at[t] + Point(0.6, 0, 0), at[t] + Point(0, 0.6, 0)};
+    for (int k = 0; k < 3; ++k) mesh.positions.row(4 + 3 * t + k) = corners[k].transpose();
+    mesh.faces.row(2 + t) << 4 + 3 * t, 5 + 3 * t, 6 + 3 * t;
+  }
+  const Eigen::RowVector3d far(400, -300, 200);
+  mesh.positions.rowwise() += far;
+  const std::vector<std::int32_t> listed = {0, 1}, asked = {2, 3, 4, 5};
+  const std::vector<float> over = standingOver(mesh, listed, asked, Vector::UnitZ());
+  EXPECT_EQ(over[0], 1);
+  EXPECT_FLOAT_EQ(over[1], 2.0F / 3);
+  EXPECT_EQ(over[2], 0);
+  EXPECT_EQ(over[3], 0) << "what lies below hides nothing";
+  EXPECT_EQ(standingOver(mesh, listed, asked, -Vector::UnitZ())[3], 1);
+  EXPECT_THROW((void)standingOver(mesh, listed, asked, Vector::Constant(kNaN)), InvalidInput);
+}
+
 TEST(VisibleFraction, RefusesBadInput) {
   TriangleMesh sphere = geometry::makeIcosphere(0);
   EXPECT_THROW((void)visibleFraction(TriangleMesh{}, viewpoint(Point(0, 0, 1))), InvalidInput);
