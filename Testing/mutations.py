@@ -117,7 +117,7 @@ ALL = [
              "(kGoalStrain - strain) / options.trade", "(kGoalStrain - strain) * options.trade",
              "ExplicaUnfoldingUnitTests", "Steering.*"),
     Mutation("Modules/Unfolding/src/Continuation.cpp",
-             "(!looked || seen > before.seen + kAccuracy)", "(!looked || seen < before.seen + kAccuracy)",
+             "std::min(now.visibility, now.seen)", "std::max(now.visibility, now.seen)",
              "ExplicaUnfoldingUnitTests", "Continuation.*"),
     Mutation("Modules/Unfolding/src/Unfold.cpp",
              "return seen < kGoalSeen ? std::min(spare, seen - kGoalSeen) : spare;",
