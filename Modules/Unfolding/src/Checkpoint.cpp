@@ -10,7 +10,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kFormat[] = "ExplicaUnfold13";  // the number counts changes of what is stored
+constexpr char kFormat[] = "ExplicaUnfold14";  // the number counts changes of what is stored
 
 /// A state holds a value a term: one with other terms is another format.
 std::string magic() {
@@ -77,8 +77,8 @@ void visitRun(const Access& access, Run& run) {
   auto& s = run.state;
   access(s.positions);
   access(s.multipliers);
-  for (auto* number :
-       {&s.damping, &s.areaStiffness, &s.drive, &s.lift, &s.collarWidth, &s.look.seen}) {
+  for (auto* number : {&s.damping, &s.areaStiffness, &s.drive, &s.lift, &s.collarWidth,
+                       &s.look.seen, &s.look.rise}) {
     access(*number);
   }
   for (auto* number : {&s.driveIteration, &s.ways, &s.iteration, &s.look.iteration})

@@ -98,9 +98,8 @@ Continuation::Outlook Continuation::outlook(Unfolder& unfolder,
   now.strongest = unfolder.state().drive >= (1 - 1e-9) * largestDrive(options_);
   const bool asks = options_.unfolder.method == Method::Implicit && !options_.targetVisibility;
   if (asks && now.visibility > now.aim - 2 * kAccuracy) {
-    const Look before = unfolder.state().look;
     now.seen = unfolder.look();
-    now.appears = before.iteration >= 0 && now.seen > before.seen + kAccuracy / 2;
+    now.appears = unfolder.state().look.rise > kAccuracy / 2;
     now.visibility = std::min(now.visibility, now.seen);
   }
   return now;

@@ -162,8 +162,11 @@ double Unfolder::seenShare() const {
 }
 double Unfolder::look() {
   Look& look = self_->state.look;
-  if (look.iteration != self_->state.iteration) look = {self_->state.iteration, seenShare()};
-  return look.seen;
+  const int now = self_->state.iteration;
+  if (look.iteration == now) return look.seen;
+  const double seen = seenShare();
+  look = {now, seen, look.iteration < 0 ? 0 : seen - look.seen};
+  return seen;
 }
 const UnfoldState& Unfolder::state() const {
   return self_->state;

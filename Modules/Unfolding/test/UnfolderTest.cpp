@@ -306,6 +306,7 @@ UnfoldState endUnderALid(double slide) {
     unfolder.setViewpoints(UnderALid::view(slide * static_cast<double>(history.size())));
     unfolder.step();
     history.push_back(unfolder.record());
+    if (unfolder.state().look.iteration >= 0) unfolder.look();  // as a run does, for its best state
   }
   return unfolder.state();
 }

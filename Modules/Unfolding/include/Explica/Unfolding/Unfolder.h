@@ -133,6 +133,7 @@ struct IterationRecord {
 struct Look {
   int iteration = -1;  ///< whose state it was; -1: there was no look
   double seen = kNaN;  ///< share of the region's area that is seen then
+  double rise = 0;     ///< of that share since the look before
 };
 
 /// Everything that the next step depends on, beyond the inputs of construction.
