@@ -5,6 +5,7 @@
 #include "Explica/Application/Execute.h"
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
@@ -140,7 +141,7 @@ std::optional<fs::path> earlierRegistration(const BidsSettings& s, const std::st
   for (const char* side : {"_hemi-L", "_hemi-R"}) {
     const fs::path file =
         fs::path(*s.registrations) / "runs" / (participant + side) / "segment/to_template.h5";
-    if (fs::exists(file)) return file;
+    if (isThere(file)) return file;
   }
   return {};
 }

@@ -4,6 +4,7 @@
 #include "AutomaticCuts.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
@@ -103,7 +104,7 @@ std::optional<std::filesystem::path> cortexBeside(const std::filesystem::path& s
     }
   }
   for (const auto& place : places) {
-    if (std::filesystem::exists(place)) return place.lexically_normal();
+    if (isThere(place)) return place.lexically_normal();
   }
   return {};
 }

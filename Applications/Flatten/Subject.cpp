@@ -6,6 +6,7 @@
 #include "AutomaticCuts.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/Selection.h"
 #include "Explica/Geometry/MeshTopology.h"
@@ -32,7 +33,7 @@ std::optional<std::filesystem::path> recordedOriginal(const std::filesystem::pat
   for (std::size_t n = 0; n < inputs.size() && n < places.size(); ++n) {
     if (inputs[n].value("role", "") != "SURFACE") continue;
     const std::filesystem::path path = places[n].value("absolute", std::string());
-    if (path.empty() || !std::filesystem::exists(path)) continue;
+    if (path.empty() || !isThere(path)) continue;
     if (provenance::digestOf(path).sha256 == inputs[n].value("sha256", "")) return path;
   }
   return {};
@@ -105,7 +106,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, keys);
   }
   const auto region = std::filesystem::path(s.surface).parent_path() / "region.label.gii";
-  if (recorded && s.labels.empty() && !s.cuts && !isBall && std::filesystem::exists(region)) {
+  if (recorded && s.labels.empty() && !s.cuts && !isBall && isThere(region)) {
     const auto labels = io::readVertexLabels(context.input(region, "region"), mesh.vertexCount());
     subject.faces = flattening::facesWithin(mesh.faces, subject.faces, labels.keys);
   }

@@ -5,6 +5,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -111,7 +112,7 @@ void measureChange(Context& context, std::size_t sessions, const MeasuredSide& s
   sums.add(geometry::vertexAreas(mid), thickness.back() - thickness.front());
 
   const fs::path parcellated = out / ("template/parcellate" + side.ending) / "regions.label.gii";
-  const fs::path regions = fs::exists(parcellated) ? parcellated : surface / "regions.label.gii";
+  const fs::path regions = isThere(parcellated) ? parcellated : surface / "regions.label.gii";
   context.runCommand(*findCommand("regions"), "regions" + side.ending,
                      {{"SURFACES", surface.string()},
                       {"atlas", {regions.string()}},

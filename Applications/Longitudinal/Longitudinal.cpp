@@ -9,6 +9,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
@@ -188,7 +189,7 @@ Termination runAll(Context& context, const LongitudinalSettings& s) {
     value = taken ? std::next(value) : values.erase(value);
   }
   values["segment.mask"] = (segment / "brain_mask.nii.gz").string();
-  if (fs::exists(segment / "to_template.h5")) {
+  if (isThere(segment / "to_template.h5")) {
     values["segment.template-transform"] = (segment / "to_template.h5").string();
   }
   for (std::size_t n = 0; n < s.sessions.size(); ++n) take(numbered("session-", n), values);

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Document.h"
 
 #include <vector>
@@ -111,8 +112,7 @@ std::string textOf(const PolygonCheckpoint& state) {
 }
 
 PolygonCheckpoint readState(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
+  if (!isThere(path)) {
     throw IOError(path.string() + " cannot be read; nothing was left to resume from");
   }
   try {

@@ -6,6 +6,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -84,7 +85,7 @@ std::optional<fs::path> fileOf(Context& context, const RegionsSettings& s, const
                                const std::string& fsName, const std::string& ours) {
   for (const std::string& name : {(side == "L" ? "lh." : "rh.") + fsName, ours}) {
     const fs::path path = fs::path(s.folder) / name;
-    if (fs::exists(path)) return context.input(path, fsName);
+    if (isThere(path)) return context.input(path, fsName);
   }
   return {};
 }

@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Execute.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
 #include "StrangersRecord.h"
@@ -43,13 +44,12 @@ int compare(const Json& before, const fs::path& beforeFolder, const fs::path& af
   for (const Json& output : before["outputs"]) {
     const std::string name = output["path"];
     const fs::path path = afterFolder / name;
-    std::error_code ignored;
-    if (!fs::exists(path, ignored)) {
+    if (!isThere(path)) {
       say("MISSING  ", name);
     } else if (name == provenance::kSummaryName) {
       say(before["results"] == after["results"] ? "identical" : "DIFFERENT", name);
     } else if (path.filename() == provenance::kRecordName && name != provenance::kRecordName &&
-               depth < kDeepest && fs::exists(beforeFolder / name, ignored)) {
+               depth < kDeepest && isThere(beforeFolder / name)) {
       // A step with a record of its own.
       different += compare(provenance::readRecord(beforeFolder / name),
                            (beforeFolder / name).parent_path(), path.parent_path(),

@@ -4,6 +4,7 @@
 #include "StrangersRecord.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Verify.h"
 
 #include <algorithm>
@@ -44,7 +45,7 @@ class RecordedInputs {
     for (const fs::path& candidate : {directory / given, fs::path(given)}) {
       std::error_code fault;
       const fs::path folder = fs::weakly_canonical(candidate, fault);
-      if (fault || !fs::is_directory(folder, fault)) continue;
+      if (fault || !isFolder(folder)) continue;
       for (std::size_t i = 0; i < named_.size(); ++i) {
         const fs::path file =
             fs::weakly_canonical(provenance::locateInput(record_, i, recordPath_), fault);

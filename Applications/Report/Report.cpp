@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Pipeline/FolderReport.h"
 #include "Explica/Report/Page.h"
@@ -51,7 +52,7 @@ std::filesystem::path pageOf(const ReportSettings& s) {
   namespace fs = std::filesystem;
   if (s.page) return *s.page;
   if (!s.out) return fs::path(s.folder) / "report.html";
-  if (fs::exists(*s.out)) {
+  if (isThere(*s.out)) {
     throw InvalidInput("--out: '" + *s.out + "' exists already; choose another folder");
   }
   return fs::path(*s.out) / "report.html";

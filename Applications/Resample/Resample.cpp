@@ -4,6 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/StatedHemisphere.h"
@@ -121,7 +122,7 @@ ResampleTarget readTarget(Context& context, const ResampleSettings& s,
   }
   const bool fsLR = s.to == kFsLR;
   const std::string file = fsLR ? fsLRFile(s, structure) : s.to;
-  if (!std::filesystem::exists(file) && !fsLR) {
+  if (!isThere(file) && !fsLR) {
     throw InvalidInput("--to: '" + s.to +
                        "' is no file, and none of fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k");
   }

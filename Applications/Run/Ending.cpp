@@ -3,6 +3,7 @@
 
 #include "Ending.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -20,8 +21,7 @@ constexpr std::array<std::array<const char*, 2>, 3> kSides = {
     {{"", ""}, {"-L", "left "}, {"-R", "right "}}};
 
 Json readIfThere(const fs::path& file) {
-  std::error_code ignored;
-  return fs::exists(file, ignored) ? provenance::readJson(file) : Json::object();
+  return isThere(file) ? provenance::readJson(file) : Json::object();
 }
 
 std::optional<double> number(const Json& summary, const char* key) {

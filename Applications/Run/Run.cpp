@@ -10,6 +10,7 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Application/Plausible.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -95,7 +96,7 @@ void settleFluid(const Context& context, const pipeline::PlannedStep& step, Json
   if (context.given("surface.fluid") || !values.contains("image") ||
       !values.contains("inner-level") ||
       std::find(step.needs.begin(), step.needs.end(), "segment") == step.needs.end() ||
-      !fs::exists(found)) {
+      !isThere(found)) {
     return;
   }
   const Json summary = provenance::readJson(found);
@@ -156,7 +157,7 @@ void runStep(Context& context, const RunSettings& s, const pipeline::PlannedStep
 void writeAsymmetry(Context& context, const fs::path& out) {
   const fs::path left = out / "surface-L" / "regions.tsv";
   const fs::path right = out / "surface-R" / "regions.tsv";
-  if (!fs::exists(left) || !fs::exists(right)) return;
+  if (!isThere(left) || !isThere(right)) return;
   writeTextFile(context.output("asymmetry.tsv"), pipeline::asymmetryTable(left, right));
 }
 
@@ -244,7 +245,7 @@ void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Pla
   for (const pipeline::PlannedStep& step : plan.steps) {
     Json values = valuesOf(context, s, step);
     if (step.command == "unfold") {
-      if (!fs::exists(values["SURFACE"].get<std::string>())) continue;
+      if (!isThere(values["SURFACE"].get<std::string>())) continue;
       settleView(context, step, values);
     }
     context.runCommand(*findCommand(step.command), step.name, values);

@@ -5,6 +5,7 @@
 
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/IO/LabelNames.h"
@@ -31,7 +32,7 @@ struct Tissue {
 };
 
 fs::path fileIn(Context& context, const fs::path& folder, const char* name) {
-  if (!fs::exists(folder / name)) {
+  if (!isThere(folder / name)) {
     throw InvalidInput("thickness: " + folder.string() + " holds no " + name +
                        "; give the output folder of explica thickness");
   }

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/LabelNames.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Provenance/Doubts.h"
@@ -32,7 +33,7 @@ TemplatePaths pathsOf(const std::string& name) {
     return {{}, kMricron / "inia19-t1-brain.nii.gz", kMricron / "inia19-NeuroMaps.nii.gz"};
   }
   const fs::path folder = name;
-  if (!fs::is_directory(folder)) {
+  if (!isFolder(folder)) {
     throw InvalidInput(
         "template: '" + name +
         "' is neither colin27 nor inia19 nor none nor a folder with brain.nii.gz and atlas.nii.gz");
@@ -64,7 +65,7 @@ auto readPlaced(Context& context, const fs::path& path, const Read& read) {
 
 std::optional<LoadedTemplate> readTemplate(Context& context, const std::string& name) {
   const TemplatePaths paths = pathsOf(name);
-  if (!fs::exists(paths.brain) || !fs::exists(paths.atlas)) {
+  if (!isThere(paths.brain) || !isThere(paths.atlas)) {
     if (name == "colin27") return {};
     if (name == "inia19") {
       throw InvalidInput("template: inia19 is not installed; install the package mricron-data");
@@ -83,7 +84,7 @@ std::optional<LoadedTemplate> readTemplate(Context& context, const std::string& 
   loaded.volumes.atlas = readPlaced(context, atlas, [&](const io::VolumeReadOptions& reading) {
     return io::readLabels(atlas, reading);
   });
-  if (fs::exists(paths.head)) loaded.volumes.head = scalars(paths.head);
+  if (isThere(paths.head)) loaded.volumes.head = scalars(paths.head);
   for (const Grid* grid : {&loaded.volumes.atlas.grid, &loaded.volumes.head.grid}) {
     if (grid->voxelCount() != 0 && !sameGrid(*grid, loaded.volumes.brain.grid)) {
       throw InvalidInput("template: the volumes of " + name + " lie on different grids");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Application/Command.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Study/HeartStudy.h"
@@ -67,7 +68,7 @@ AboutPeople aboutOf(const study::StudyFile& file) {
 /// A row a planned run, in the order of the study file.
 std::vector<study::StudyRow> rowsOf(const study::Study& study, const fs::path& out) {
   std::map<std::string, study::StudyRow> made;
-  if (fs::is_directory(out / "runs")) {
+  if (isFolder(out / "runs")) {
     for (study::StudyRow& row : study::collectRows(out)) {
       std::string folder = row.participant + "_hemi-" + row.hemisphere;
       if (!row.region.empty()) folder += "_region-" + row.region;

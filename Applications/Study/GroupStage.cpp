@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Html.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
@@ -128,8 +129,8 @@ std::string peopleTable(const std::vector<Member>& members, const AboutPeople& a
 
 std::string regionsOf(const fs::path& run) {
   const fs::path file = run / "regions/regions.tsv", kept = run / study::kKeptName;
-  if (fs::exists(file)) return fileText(file);
-  return fs::exists(kept) ? provenance::readJson(kept).value("regions", std::string()) : "";
+  if (isThere(file)) return fileText(file);
+  return isThere(kept) ? provenance::readJson(kept).value("regions", std::string()) : "";
 }
 
 /// The runs' tables of regions, one below the other.

@@ -37,14 +37,14 @@ Json accountOf(const fs::path& run, const std::string& key) {
   kept["steps"] = Json::object();
   for (const fs::path& step : foldersOf(run)) {
     const fs::path summary = step / provenance::kSummaryName;
-    if (!fs::exists(summary)) continue;
+    if (!isThere(summary)) continue;
     kept["steps"][step.filename().string()] = provenance::readJson(summary);
   }
   const Json record = provenance::readRecord(run / "register" / provenance::kRecordName);
   kept["template"] = record["options"]["template"];
   for (const auto& [name, file] : {std::pair{"surface_regions", "surface/regions.tsv"},
                                    std::pair{"regions", "regions/regions.tsv"}}) {
-    if (fs::exists(run / file)) kept[name] = fileText(run / file);
+    if (isThere(run / file)) kept[name] = fileText(run / file);
   }
   return kept;
 }
@@ -59,7 +59,7 @@ TemplateMaps templateMapsOf(const fs::path& run) {
 
 bool isKept(const fs::path& run, const std::string& key) {
   const fs::path kept = run / study::kKeptName;
-  return fs::exists(kept) && provenance::readJson(kept).value("key", "") == key;
+  return isThere(kept) && provenance::readJson(kept).value("key", "") == key;
 }
 
 void keepForGroup(const fs::path& run, const std::string& key) {
@@ -88,7 +88,7 @@ void keepForGroup(const fs::path& run, const std::string& key) {
 void shareSteps(const fs::path& made, const fs::path& run, const std::vector<std::string>& steps) {
   std::error_code fault;
   for (const std::string& step : steps) {
-    if (!fs::exists(made / step / provenance::kRecordName) || fs::exists(run / step)) continue;
+    if (!isThere(made / step / provenance::kRecordName) || isThere(run / step)) continue;
     fs::create_directories(run, fault);
     fs::copy(made / step, run / step,
              fs::copy_options::recursive | fs::copy_options::create_hard_links, fault);

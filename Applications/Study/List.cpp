@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Study/StudyState.h"
 #include "StudyInput.h"
 
@@ -49,7 +50,7 @@ Termination run(Context&, const StudyListSettings& s) {
   const study::PathOptions paths = studyPathOptions();
   for (const study::PlannedSubject& subject : study::planStudy(file, paths).subjects) {
     const std::string key = study::keyOf(subject, paths);
-    if (s.todo && fs::exists(study::stateFile(*s.out, subject, key))) continue;
+    if (s.todo && isThere(study::stateFile(*s.out, subject, key))) continue;
     std::cout << subject.participant.name().substr(4);
     if (s.keys) std::cout << "\t" << key;
     std::cout << "\n";

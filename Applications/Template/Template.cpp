@@ -69,7 +69,7 @@ struct Person {
 /// The runs of a study, or the folder itself.
 std::vector<fs::path> peopleIn(const std::string& given) {
   const fs::path runs = fs::path(given) / "runs";
-  return fs::is_directory(runs) ? foldersOf(runs) : std::vector<fs::path>{given};
+  return isFolder(runs) ? foldersOf(runs) : std::vector<fs::path>{given};
 }
 
 /// What a folder has of a hemisphere, if it has its sphere.

@@ -3,6 +3,7 @@
 #include "OpenedFiles.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "OpenedFolders.h"
 
@@ -48,7 +49,7 @@ viewer::WindowLabels windowLabels(const ShownSurface& surface, const fs::path& p
 }
 
 viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) {
-  if (fs::is_directory(path)) return openFolder(path, surface);
+  if (isFolder(path)) return openFolder(path, surface);
   viewer::Opened opened;
   const std::string name = path.filename().string();
   if (isVolume(path)) {

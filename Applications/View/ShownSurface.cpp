@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "ShownSurface.h"
+#include "Explica/Core/Folders.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ bool saysThickness(std::string text) {
 /// 1 where maps beside it hold, by one map for all of them; none where there is no such file.
 std::optional<Eigen::VectorXd> validBeside(const fs::path& file, Eigen::Index count) {
   const fs::path beside = file.parent_path() / kValid;
-  if (file.filename() == kValid || !fs::exists(beside)) return {};
+  if (file.filename() == kValid || !isThere(beside)) return {};
   const auto maps = io::readVertexMaps(beside);
   if (maps.size() != 1 || maps.front().values.size() != count) return {};
   return maps.front().values;

@@ -10,6 +10,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -190,7 +191,7 @@ report::Picture drawSlices(const ViewSettings& s) {
 report::Picture drawSurfaces(const ViewSettings& s) {
   std::vector<report::Picture> figures;
   for (const std::string& file : s.files) {
-    if (std::filesystem::is_directory(file)) {
+    if (isFolder(file)) {
       throw UsageError("'" + file +
                        "' is a folder: --screenshot draws surfaces, or a volume with surfaces; a "
                        "folder of explica unfold is shown by --film or in the window");
@@ -210,7 +211,7 @@ void openWindow(Context& context, const ViewSettings& s, const ShowWindow& show)
         "the window shows a surface: name one first; or write a picture of slices with "
         "--screenshot FILE.png");
   }
-  const bool folder = std::filesystem::is_directory(s.files.front());
+  const bool folder = isFolder(s.files.front());
   const auto found = folder ? surfaceOfFolder(s.files.front()) : std::nullopt;
   if (folder && !found) {
     throw UsageError("'" + s.files.front() +
@@ -219,7 +220,7 @@ void openWindow(Context& context, const ViewSettings& s, const ShowWindow& show)
   if (found) context.input(found->file, "surface");
   for (std::size_t n = 1; n < s.files.size(); ++n) {
     // Opened on the first one: all are of one hemisphere.
-    if (!std::filesystem::is_directory(s.files[n])) context.input(s.files[n], "opened");
+    if (!isFolder(s.files[n])) context.input(s.files[n], "opened");
   }
   if (!show) startWindowProgram();
   const ShownSurface start =

@@ -4,6 +4,7 @@
 #include "WindowProgram.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 
 #include <unistd.h>
 
@@ -34,7 +35,7 @@ std::string ownArguments() {
 void startWindowProgram() {
   constexpr const char* kWithout = "; --screenshot and --film draw without a window";
   const fs::path program = fromHere(EXPLICA_WINDOW_FROM_PROGRAM);
-  if (!fs::exists(program)) {
+  if (!isThere(program)) {
     throw EnvironmentError(program.string() +
                            ": the window is not installed; install Debian's package "
                            "explica-window, or build with Qt 5 and VTK's Qt widget" +

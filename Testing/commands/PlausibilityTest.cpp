@@ -61,6 +61,25 @@ TEST(PlausibilityCommand, ABrainIsPlausible) {
   EXPECT_NEAR(summary["brain_volume_ml"].get<double>(), 1437, 20);
 }
 
+TEST(PlausibilityCommand, WhiteMatterAndFluidExchangedAreFlagged) {
+  TemporaryFolder folder;
+  ASSERT_EQ(
+      explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", folder / "phantom"})
+          .exitCode,
+      0);
+  const std::string labels = folder / "phantom/labels.nii.gz";  // 1 fluid, 2 grey, 3 white
+  const auto surface = [&](const std::string& white) {
+    return explica({"surface", labels, "--white-label", white, "--grey-label", "2", "--faces",
+                    "1000", "--out", folder / ("white-" + white)});
+  };
+  EXPECT_EQ(surface("3").exitCode, 0);
+  const CommandResult exchanged = surface("1");
+  EXPECT_EQ(exchanged.exitCode, 3) << exchanged;
+  const auto summary = readJson(folder / "white-1/summary.json");
+  EXPECT_EQ(summary["verdict"], "doubtful");
+  EXPECT_GT(summary["white_changed"].get<double>(), 0.1);
+}
+
 TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
   TemporaryFolder folder;
   io::writeVolume(folder / "t1.nii.gz", ballHead(90, 4, {kFluid, kGrey, kWhite}));

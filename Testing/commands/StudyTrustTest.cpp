@@ -182,10 +182,12 @@ TEST(StudyTrust, AFullDiskLeavesWholeFilesAndMoreRoomGivesTheSameBytes) {
 
 TEST(StudyTrust, AnUnreadableInputInTheMiddleIsARowAndStopsNobody) {
   const TemporaryFolder folder;
-  const SmallStudy study(folder.path(), {"01", "02", "03", "04"});
+  const SmallStudy study(folder.path(), {"01", "02", "03", "04", "05"});
   fs::resize_file(study.labels("02"), fs::file_size(study.labels("02")) / 2);
   fs::remove(study.labels("03"));
   fs::create_symlink("/nowhere/labels.nii.gz", study.labels("03"));
+  fs::remove(study.labels("05"));
+  fs::create_symlink(study.labels("05").filename(), study.labels("05"));  // a loop of links
   const CommandResult run = explica(study.participants(study.out()));
   ASSERT_EQ(run.exitCode, 3) << run;
   const CommandResult group = explica(study.group(study.out()));
@@ -195,6 +197,7 @@ TEST(StudyTrust, AnUnreadableInputInTheMiddleIsARowAndStopsNobody) {
   EXPECT_NE(table.find("sub-02\tL\tfailed: "), std::string::npos) << table;
   EXPECT_NE(table.find("sub-03\tL\tfailed: "), std::string::npos) << table;
   EXPECT_NE(table.find("sub-04\tL\tdone\t"), std::string::npos) << table;
+  EXPECT_NE(table.find("sub-05\tL\tfailed: "), std::string::npos) << table;
   EXPECT_FALSE(fs::exists(study.out() + "/sub-02"));
   EXPECT_FALSE(fs::exists(study.out() + "/runs/sub-02_hemi-L/surface"));
 }

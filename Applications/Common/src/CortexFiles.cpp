@@ -5,6 +5,7 @@
 
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Sampling/Depth.h"
 #include "Explica/Study/SubjectFiles.h"
@@ -47,7 +48,7 @@ std::optional<Pair> pairBy(const Naming& naming, const fs::path& folder) {
     if (fnmatch(naming.pattern.c_str(), name.c_str(), 0) != 0) continue;
     std::string pial = name;
     pial.replace(pial.rfind(naming.white), naming.white.size(), naming.pial);
-    if (fs::exists(folder / pial)) found.push_back(entry.path());
+    if (isThere(folder / pial)) found.push_back(entry.path());
   }
   if (found.empty()) return {};
   // The subject's own surface has the shortest name: those of a template name their space, too.
@@ -80,7 +81,7 @@ std::optional<Pair> pairOf(const fs::path& folder, const std::string& side) {
 
 Pair findPair(const fs::path& folder, const std::optional<std::string>& hemisphere) {
   const Pair plain{folder / "white.surf.gii", folder / "pial.surf.gii", {}};
-  if (fs::exists(plain.white) && fs::exists(plain.pial)) return plain;
+  if (isThere(plain.white) && isThere(plain.pial)) return plain;
   std::vector<Pair> found;
   for (const std::string side : {"L", "R"}) {
     if (hemisphere && *hemisphere != side) continue;

@@ -6,6 +6,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Execute.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -40,7 +41,7 @@ fs::path cacheFolder() {
 /// Makes the template beside its place and moves it there whole, so that several processes may.
 fs::path colin27(Context& context) {
   const fs::path place = cacheFolder() / ("colin27-" + std::string(provenance::software().version));
-  if (fs::exists(place / provenance::kRecordName)) return place;
+  if (isThere(place / provenance::kRecordName)) return place;
   if (!hasTemplate(kDefaultTemplate)) {
     throw InvalidInput(
         "template colin27: '" + kColin27Brain.string() +
@@ -71,10 +72,9 @@ fs::path colin27(Context& context) {
 }
 
 fs::path folderOf(Context& context, const std::string& name) {
-  if (fs::is_directory(name)) return name;
+  if (isFolder(name)) return name;
   const char* subjects = std::getenv("SUBJECTS_DIR");
-  if (subjects != nullptr && fs::is_directory(fs::path(subjects) / name))
-    return fs::path(subjects) / name;
+  if (subjects != nullptr && isFolder(fs::path(subjects) / name)) return fs::path(subjects) / name;
   if (name == kDefaultTemplate) return colin27(context);
   throw InvalidInput("template '" + name +
                      "': neither a folder nor a subject in $SUBJECTS_DIR; name a folder with "
@@ -104,7 +104,7 @@ std::vector<std::string> withRegistration(const std::string& folder) {
 }
 
 bool hasTemplate(const std::string& name) {
-  return name != kDefaultTemplate || (fs::exists(kColin27Brain) && fs::exists(kColin27Atlas));
+  return name != kDefaultTemplate || (isThere(kColin27Brain) && isThere(kColin27Atlas));
 }
 
 CortexTemplate findTemplate(Context& context, const std::string& name,

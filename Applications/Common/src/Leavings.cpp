@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Leavings.h"
+#include "Explica/Core/Folders.h"
 
 #include <algorithm>
 #include <mutex>
@@ -42,7 +43,7 @@ void removeLeavings() {
     std::error_code fault;
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       std::filesystem::remove_all(*path, fault);
-      if (!fault && !std::filesystem::exists(*path, fault)) break;
+      if (!fault && !isThere(*path)) break;
     }
   }
   noted().paths.clear();

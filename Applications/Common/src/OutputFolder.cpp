@@ -4,6 +4,7 @@
 #include "OutputFolder.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Record.h"
 #include "Leavings.h"
 #include "LockFile.h"
@@ -35,7 +36,7 @@ constexpr auto kHeartbeat = std::chrono::seconds(30);
 void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep) {
   const fs::path record = folder / provenance::kRecordName;
   std::error_code ignored;
-  if (!fs::exists(record, ignored)) return;
+  if (!isThere(record)) return;
   std::set<fs::path> emptied;
   try {
     const Json earlier = provenance::readRecord(record);
@@ -63,10 +64,9 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
 }
 
 void requirePlaceFor(const fs::path& folder) {
-  std::error_code fault;
   auto parent = fs::absolute(folder);
-  while (!fs::exists(parent, fault) && parent.has_relative_path()) parent = parent.parent_path();
-  if (!fs::is_directory(parent, fault)) {
+  while (!isThere(parent) && parent.has_relative_path()) parent = parent.parent_path();
+  if (!isFolder(parent)) {
     cannot("the output folder cannot be made", folder, parent.string() + " is a file");
   }
   if (access(parent.c_str(), W_OK) != 0) {
@@ -114,7 +114,7 @@ OutputFolder::OutputFolder(fs::path folder, const OutputRules& rules,
   const bool inside = existed_ || inPlace_;
   std::vector<fs::path> missing;
   for (fs::path p = inside ? absolute : absolute.parent_path();
-       !fs::exists(p, fault) && p.has_relative_path(); p = p.parent_path()) {
+       !isThere(p) && p.has_relative_path(); p = p.parent_path()) {
     missing.push_back(p);
   }
   for (auto it = missing.rbegin(); it != missing.rend(); ++it) {

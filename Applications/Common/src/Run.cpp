@@ -5,6 +5,7 @@
 
 #include "Explica/Application/TimeKept.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
@@ -43,11 +44,10 @@ void noteDeclaredInputs(Context& context, const Declaration& declaration) {
       const std::string path = element.get<std::string>();
       const bool mayBeFolder =
           *parameter.file == FileKind::Folder || *parameter.file == FileKind::Any;
-      std::error_code fault;
-      if (mayBeFolder && fs::is_directory(path, fault)) continue;
+      if (mayBeFolder && isFolder(path)) continue;
       if (*parameter.file == FileKind::Folder) {
-        throw IOError(path + (fs::exists(path, fault) ? ": is a file; a folder is needed"
-                                                      : ": no such folder"));
+        throw IOError(path +
+                      (isThere(path) ? ": is a file; a folder is needed" : ": no such folder"));
       }
       context.input(path, parameter.option.name);
     }

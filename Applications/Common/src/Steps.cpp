@@ -3,6 +3,7 @@
 // Commands that a command runs as its steps.
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Provenance/Software.h"
 #include "Explica/Provenance/Verify.h"
@@ -39,8 +40,7 @@ bool filesExist(const Declaration& declaration) {
     if (!parameter.file) continue;
     const Json value = provenance::valueOf(parameter.option);
     for (const Json& name : value.is_array() ? value : Json::array({value})) {
-      std::error_code ignored;
-      if (name.is_string() && !fs::exists(name.get<std::string>(), ignored)) return false;
+      if (name.is_string() && !isThere(name.get<std::string>())) return false;
     }
   }
   return true;
@@ -85,8 +85,7 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
                                              const Json& options) {
   if (state_->run.common.dryRun) return {};  // what would be done is checked
   const fs::path path = outputFolder() / name / provenance::kRecordName;
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {};
+  if (!isThere(path)) return {};
   const Run nested = nestedRun(command, options, state_->run, state_->monitor);
   try {
     const Json record = provenance::readRecord(path);
@@ -115,7 +114,7 @@ std::optional<Outcome> Context::reuseCommand(const Command& command, const std::
       }
       for (const auto& element : value.is_array() ? value : Json::array({value})) {
         const std::string file = element.get<std::string>();
-        if (fs::is_directory(file, ignored)) continue;
+        if (isFolder(file)) continue;
         wanted.insert(parameter.option.name + " " + provenance::digestOf(file).sha256);
       }
     }

@@ -10,6 +10,16 @@ namespace explica {
 
 namespace fs = std::filesystem;
 
+bool isThere(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
+bool isFolder(const fs::path& path) {
+  std::error_code unknown;
+  return fs::is_directory(path, unknown);
+}
+
 std::vector<fs::path> entriesOf(const fs::path& folder,
                                 const std::function<bool(const std::string&)>& wanted) {
   std::vector<fs::path> entries;
@@ -24,7 +34,7 @@ std::vector<fs::path> entriesOf(const fs::path& folder,
 std::vector<fs::path> foldersOf(const fs::path& folder,
                                 const std::function<bool(const std::string&)>& wanted) {
   std::vector<fs::path> folders = entriesOf(folder, wanted);
-  std::erase_if(folders, [](const fs::path& entry) { return !fs::is_directory(entry); });
+  std::erase_if(folders, [](const fs::path& entry) { return !isFolder(entry); });
   return folders;
 }
 

@@ -5,6 +5,7 @@
 #include "Explica/Core/FileText.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/WholeFile.h"
 
 #include <cstring>
@@ -43,8 +44,7 @@ constexpr std::size_t kMostState = std::size_t{16} << 30;  // bytes: of the larg
 StateReader::StateReader(const std::filesystem::path& path, std::string_view magic,
                          std::string what)
     : name_(path.string()), what_(std::move(what)) {
-  std::error_code fault;
-  if (!std::filesystem::exists(path, fault)) {
+  if (!isThere(path)) {
     throw IOError(name_ + " cannot be read; nothing was left to resume from");
   }
   const std::string all = fileText(path, kMostState);

@@ -4,6 +4,7 @@
 #include "Explica/Core/WholeFile.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -49,8 +50,7 @@ std::filesystem::path temporaryFor(const std::filesystem::path& path) {
 }  // namespace
 
 WholeFile::WholeFile(std::filesystem::path path) : path_(std::move(path)) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) {
+  if (isFolder(path_)) {
     throw EnvironmentError("cannot write '" + path_.string() + "': it is a folder");
   }
   // A file without a name leaves no trace if the process is killed.  Not every file system has

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Core/Folders.h"
 #include "VolumeFormats.h"
 
 #include <Eigen/Geometry>
@@ -307,7 +308,7 @@ std::filesystem::path imageOfPair(const std::filesystem::path& header) {
     if (stem.ends_with(ending)) stem.resize(stem.size() - ending.size());
   }
   for (const char* ending : {".img", ".img.gz"}) {
-    if (std::filesystem::exists(stem + ending)) return stem + ending;
+    if (isThere(stem + ending)) return stem + ending;
   }
   failToRead(header, "is a NIfTI header without its image '" + stem + ".img'");
 }

@@ -8,6 +8,7 @@
 #include "StoredVolume.h"
 #include "VolumeFormats.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Text.h"
 
@@ -359,7 +360,7 @@ StoredVolume readStored(const std::filesystem::path& path, const VolumeReadOptio
 std::filesystem::path openedFor(const std::filesystem::path& path) {
   std::filesystem::path opened = path;
   if (path.extension() == ".img") opened.replace_extension(".hdr");
-  return std::filesystem::exists(opened) ? opened : path;
+  return isThere(opened) ? opened : path;
 }
 
 void scaledFloats(const StoredVolume& stored, const std::uint8_t* from, float* to) {

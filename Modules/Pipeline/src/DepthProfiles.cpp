@@ -91,7 +91,7 @@ std::vector<const DepthProfile*> VolumeProfiles::largest(std::size_t most) const
 
 std::vector<VolumeProfiles> readDepthProfiles(const fs::path& folder) {
   std::vector<VolumeProfiles> found;
-  if (fs::exists(folder / kProfiles)) {
+  if (isThere(folder / kProfiles)) {
     const Table table = readTable(folder / kProfiles);
     for (const std::string& volume : namesIn(table, "volume")) {
       found.push_back({volume, "vertices", kProfiles, profilesOf(table, volume)});

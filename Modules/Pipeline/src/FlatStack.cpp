@@ -44,7 +44,7 @@ Values readValues(const fs::path& file) {
 /// Whether the command was told that its volumes are of labels.
 bool holdsLabels(const fs::path& folder) {
   const fs::path record = folder / provenance::kRecordName;
-  if (!fs::exists(record)) return false;
+  if (!isThere(record)) return false;
   return provenance::readRecord(record)
       .value("options", provenance::Json::object())
       .value("nearest", false);

@@ -3,6 +3,7 @@
 #include "Explica/Pipeline/Plan.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Study/SubjectFiles.h"
 
@@ -401,7 +402,7 @@ class Planner {
 }  // namespace
 
 InputKind detectKind(const fs::path& input) {
-  if (fs::is_directory(input)) {
+  if (isFolder(input)) {
     return study::findSubjectFiles(input).layout == study::SubjectLayout::FreeSurfer
                ? InputKind::FreeSurfer
                : InputKind::Bids;

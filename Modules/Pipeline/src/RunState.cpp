@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Pipeline/RunState.h"
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Json.h"
 
 #include <array>
@@ -34,7 +35,7 @@ void writeRunState(const std::filesystem::path& file, const std::vector<StepNote
 
 std::vector<StepNote> readRunState(const std::filesystem::path& file) {
   std::vector<StepNote> steps;
-  if (!std::filesystem::exists(file)) return steps;
+  if (!isThere(file)) return steps;
   const provenance::Json state = provenance::readJson(file);
   const provenance::Json entries = state.value("steps", provenance::Json::array());
   for (const provenance::Json& entry : entries) {

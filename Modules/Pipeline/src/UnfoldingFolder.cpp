@@ -21,7 +21,7 @@ std::vector<std::int32_t> unfoldedRegion(const fs::path& folder,
                                          std::optional<std::int64_t> vertexCount) {
   std::vector<std::int32_t> region;
   const fs::path file = folder / "region.label.gii";
-  if (!fs::exists(file)) return region;
+  if (!isThere(file)) return region;
   const io::LabelMap labels = io::readVertexLabels(file, vertexCount);
   for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
     if (labels.keys[v] != 0) region.push_back(static_cast<std::int32_t>(v));

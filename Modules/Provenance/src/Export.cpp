@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Export.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Verify.h"
 
 #include <algorithm>
@@ -142,7 +143,7 @@ std::vector<LocatedRecord> recordsBehind(const fs::path& first) {
     waiting.pop_back();
     std::error_code ignored;
     if (!seen.insert(fs::weakly_canonical(path, ignored)).second) continue;
-    if (!records.empty() && !fs::exists(path, ignored)) continue;
+    if (!records.empty() && !isThere(path)) continue;
     records.push_back({path, readRecord(path)});
     for (const fs::path& parent : parentRecords(path)) waiting.push_back(parent);
   }

@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Record.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Software.h"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, cons
   const auto hemi = name.find("_hemi-");
   std::error_code fault;
   const std::filesystem::path runs = study / "runs";
-  if (!name.starts_with("sub-") || !std::filesystem::is_directory(runs, fault)) return std::nullopt;
+  if (!name.starts_with("sub-") || !isFolder(runs)) return std::nullopt;
   const auto end = name.find('_', hemi == std::string::npos ? 0 : hemi + 1);
   const std::string beginning = name.substr(0, end);
   std::vector<std::filesystem::path> candidates;

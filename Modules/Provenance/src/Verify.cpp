@@ -4,6 +4,7 @@
 #include "Explica/Provenance/Verify.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Termination.h"
 
 #include <algorithm>
@@ -25,11 +26,6 @@ FileState stateOf(const fs::path& path, const Json& entry) {
   } catch (const IOError&) {
     return FileState::Missing;
   }
-}
-
-bool isThere(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
 }
 
 /// The record that made an input, where it is now.
@@ -137,9 +133,8 @@ bool Verification::allSame() const {
 }
 
 fs::path recordAt(const fs::path& place) {
-  std::error_code ignored;
-  if (!fs::is_directory(place, ignored)) return place;
-  if (fs::exists(place / kRecordName, ignored)) return place / kRecordName;
+  if (!isFolder(place)) return place;
+  if (isThere(place / kRecordName)) return place / kRecordName;
   throw InvalidInput(place.string() + ": holds no " + kRecordName +
                      "; name a folder that explica has written, or a record");
 }
@@ -181,7 +176,7 @@ std::string historyOf(const fs::path& file) {
   const auto found = findRecordOf(file, digest);
   if (!found) {
     const fs::path beside = fs::absolute(file).parent_path() / kRecordName;
-    if (fs::exists(beside)) static_cast<void>(readRecord(beside));  // one that cannot be read
+    if (isThere(beside)) static_cast<void>(readRecord(beside));  // one that cannot be read
     throw InvalidInput(file.string() + ": no " + kRecordName +
                        " beside it or above names it; it was not made by explica, or was moved "
                        "without its record");

@@ -41,7 +41,7 @@ Participant participantIn(const fs::path& dataset, const fs::path& folder,
   const fs::path freeSurfer = dataset / "sourcedata" / "freesurfer" / ("sub-" + participant.label);
   std::string whyNotFreeSurfer;
   std::optional<SubjectFiles> made;
-  if (fs::exists(freeSurfer)) made = lookInto(freeSurfer, whyNotFreeSurfer);
+  if (isThere(freeSurfer)) made = lookInto(freeSurfer, whyNotFreeSurfer);
   const auto anat = lookInto(folder / "anat", participant.problem);
   if (anat && (!made || isFreeSurfers(*anat))) {
     participant.input = folder / "anat";
@@ -62,9 +62,9 @@ std::string Participant::name() const {
 
 std::vector<Participant> findParticipants(const fs::path& dataset,
                                           const std::vector<std::string>& labels) {
-  if (!fs::is_directory(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
+  if (!isFolder(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
   const fs::path description = dataset / "dataset_description.json";
-  if (!fs::exists(description)) {
+  if (!isThere(description)) {
     throw InvalidInput(dataset.string() +
                        ": is not a BIDS data set: dataset_description.json is missing");
   }

@@ -136,7 +136,7 @@ std::vector<Export> exportsOf(const fs::path& run) {
 
 /// Writes unless the file holds the same already: names and dates of unchanged files stay.
 void writeIfDifferent(const fs::path& path, const std::string& text) {
-  if (fs::exists(path) && fileText(path) == text) return;
+  if (isThere(path) && fileText(path) == text) return;
   writeTextFile(path, text);
 }
 
@@ -169,7 +169,7 @@ std::string nameIn(const Participant& participant, const std::string& hemisphere
 /// Everything in a subject's folder that a step may have read.
 std::vector<fs::path> filesOf(const fs::path& input) {
   std::vector<fs::path> all;
-  if (!fs::is_directory(input)) return {input};
+  if (!isFolder(input)) return {input};
   const SubjectFiles files = findSubjectFiles(input);
   for (const auto& file : {files.labels, files.t1, files.mask, files.atlas, files.surfaceVolume}) {
     if (file) all.push_back(*file);
@@ -194,7 +194,7 @@ class Sources {
     for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
                              "parcellate", "regions", "unfold"}) {
       const fs::path record = run_ / step / provenance::kRecordName;
-      if (fs::exists(record)) records_[step] = provenance::readRecord(record);
+      if (isThere(record)) records_[step] = provenance::readRecord(record);
     }
   }
 
@@ -238,7 +238,7 @@ class Sources {
         continue;
       }
       for (const auto& [other, made] : records_) {
-        if (other == step || !fs::exists(run_ / other / name)) continue;
+        if (other == step || !isThere(run_ / other / name)) continue;
         const auto exported = exported_.find(other + "/" + name);
         if (exported != exported_.end()) {
           uris.insert(exported->second);
@@ -356,9 +356,9 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
   const std::vector<Export> exports = exportsOf(run);
   std::vector<const Export*> items;
   for (const Export& item : exports) {
-    if (fs::exists(run / item.step / item.file)) {
+    if (isThere(run / item.step / item.file)) {
       items.push_back(&item);
-    } else if (!isShared(item) || !fs::exists(other / item.step / item.file)) {
+    } else if (!isShared(item) || !isThere(other / item.step / item.file)) {
       fs::remove(out / sidecarOf(nameOf(item)));
       fs::remove(out / nameOf(item));
     }
@@ -367,7 +367,7 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
   const Sources sources(run, participant, hemisphere, origin);
   fs::create_directories(out / anatOf(participant));
   Json surface = Json::object();
-  if (fs::exists(run / "surface" / provenance::kSummaryName)) {
+  if (isThere(run / "surface" / provenance::kSummaryName)) {
     surface = provenance::readJson(run / "surface" / provenance::kSummaryName);
   }
   for (const Export* listed : items) {

@@ -109,8 +109,7 @@ constexpr HeartColumn kColumns[] = {
 
 /// Thickness of the segments at both phases, and thickening.
 void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
-  std::error_code fault;
-  if (!fs::exists(file, fault)) return;
+  if (!isThere(file)) return;
   const auto phase = [&](const char* key) {
     return summary.contains(key) ? cellOf(summary[key]) : std::string();
   };
@@ -133,14 +132,14 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
   row.folder = subject.folder / "heart";
   const fs::path folder = out / row.folder;
   row.state = "not begun";
-  if (fs::exists(folder / "problem.txt")) {
+  if (isThere(folder / "problem.txt")) {
     std::istringstream problem(fileText(folder / "problem.txt"));
     std::string why;
     std::getline(problem, why);
     row.state = why == "interrupted" ? why : "failed: " + why;
     return row;
   }
-  if (!fs::exists(folder / "summary.json")) return row;
+  if (!isThere(folder / "summary.json")) return row;
   try {
     const Json summary = provenance::readJson(folder / "summary.json");
     row.state = "done";
@@ -154,7 +153,7 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
-  row.pictured = fs::exists(folder / "bullseye.png");
+  row.pictured = isThere(folder / "bullseye.png");
   return row;
 }
 
@@ -186,7 +185,7 @@ std::string valueIn(const std::map<std::string, std::string>& values, const std:
 std::vector<HeartSubject> findHearts(const fs::path& dataset,
                                      const std::vector<std::string>& wanted,
                                      const HeartLayout& layout) {
-  if (!fs::is_directory(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
+  if (!isFolder(dataset)) throw InvalidInput(dataset.string() + ": is not a folder");
   std::vector<HeartSubject> subjects;
   std::set<std::string> people;
   for (const fs::path& person : foldersIn(dataset)) {
@@ -216,8 +215,7 @@ std::vector<HeartSubject> findHearts(const fs::path& dataset,
 
 std::map<std::string, TableRow> aboutParticipants(const fs::path& dataset) {
   std::map<std::string, TableRow> about;
-  std::error_code fault;
-  if (!fs::exists(dataset / "participants.tsv", fault)) return about;
+  if (!isThere(dataset / "participants.tsv")) return about;
   for (TableRow& row : tableRows(fileText(dataset / "participants.tsv"))) {
     const auto person = row.extract("participant_id");
     if (person.empty()) {

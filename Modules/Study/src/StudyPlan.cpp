@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 
 #include <Eigen/Dense>
 
@@ -180,7 +181,7 @@ class Planner {
       if (atlas.contains("atlas")) {
         participant.atlas = pathOf(atlas["atlas"].get<std::string>(), label);
       }
-      if (!fs::exists(participant.input)) {
+      if (!isThere(participant.input)) {
         participant.problem = placeIn(file_, place) + participant.input.string() +
                               " does not exist; mend the path or take the subject out";
       }

@@ -23,11 +23,11 @@ constexpr std::size_t kKeyDigits = 16;  // 64 bits: two of a million subjects' k
 Json contentOf(const fs::path& path) {
   std::error_code fault;
   if (fs::is_regular_file(path, fault)) return provenance::digestOf(path).sha256;
-  if (!fs::is_directory(path, fault)) return nullptr;
+  if (!isFolder(path)) return nullptr;
   Json files = Json::object();
   std::vector<fs::path> found;
   for (const char* part : {"mri", "surf", "label"}) {
-    if (!fs::is_directory(path / part, fault)) continue;
+    if (!isFolder(path / part)) continue;
     for (const auto& entry : fs::directory_iterator(path / part)) {
       if (entry.is_regular_file(fault)) found.push_back(entry.path());
     }

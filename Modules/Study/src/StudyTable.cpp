@@ -122,7 +122,7 @@ void addFlags(StudyRow& row, const std::string& step, const Json& summary) {
 void addRating(StudyRow& row, const fs::path& out, const fs::path& run) {
   const std::string name = run.filename().string() + "_rating.json";
   for (const fs::path& file : {run / name, out / "ratings" / name}) {
-    if (!fs::exists(file)) continue;
+    if (!isThere(file)) continue;
     const Json rating = provenance::readJson(file);
     if (rating.value("format", "") != "explica-rating" || !rating.contains("ratings")) {
       throw InvalidInput(file.string() + ": is not a rating that the page of a run has saved");
@@ -139,9 +139,9 @@ void addRating(StudyRow& row, const fs::path& out, const fs::path& run) {
 
 /// A run's folder as it is, in the form of kKeptName; or what was kept of it.
 Json accountOf(const fs::path& run) {
-  if (fs::exists(run / kKeptName)) return provenance::readJson(run / kKeptName);
+  if (isThere(run / kKeptName)) return provenance::readJson(run / kKeptName);
   const auto read = [](const fs::path& file) {
-    return fs::exists(file) ? provenance::readJson(file) : Json();
+    return isThere(file) ? provenance::readJson(file) : Json();
   };
   Json all = {{"run", read(run / "run.json")}, {"steps", Json::object()}};
   for (const char* step : kSteps) {
@@ -151,7 +151,7 @@ Json accountOf(const fs::path& run) {
   for (const auto& [name, step] :
        {std::pair{"surface_regions", "surface"}, {"regions", "regions"}}) {
     const fs::path regions = run / step / "regions.tsv";
-    if (fs::exists(regions)) all[name] = fileText(regions);
+    if (isThere(regions)) all[name] = fileText(regions);
   }
   return all;
 }
@@ -181,14 +181,14 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
-  if (fs::exists(run / "problem.txt")) {
+  if (isThere(run / "problem.txt")) {
     std::istringstream file(fileText(run / "problem.txt"));
     std::string problem;
     std::getline(file, problem);
     row.state = problem == "interrupted" ? problem : "failed: " + problem;
   }
-  if (fs::exists(run / "report.html")) row.report = fs::relative(run / "report.html", out);
-  if (fs::exists(run / "thumbnail.png")) row.thumbnail = fs::relative(run / "thumbnail.png", out);
+  if (isThere(run / "report.html")) row.report = fs::relative(run / "report.html", out);
+  if (isThere(run / "thumbnail.png")) row.thumbnail = fs::relative(run / "thumbnail.png", out);
   return row;
 }
 
@@ -249,7 +249,7 @@ std::string cellText(std::string text) {
 
 std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subject) {
   const fs::path runs = out / "runs";
-  if (!fs::is_directory(runs)) {
+  if (!isFolder(runs)) {
     throw InvalidInput(out.string() + ": holds no runs; do the participant level first");
   }
   const auto isRun = [&](const std::string& name) {

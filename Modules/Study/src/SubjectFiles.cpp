@@ -4,6 +4,7 @@
 #include "Explica/Study/SubjectFiles.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 
 #include <algorithm>
 #include <system_error>
@@ -167,8 +168,7 @@ SubjectFiles inAnatFolder(const fs::path& folder) {
 }  // namespace
 
 SubjectFiles findSubjectFiles(const fs::path& folder) {
-  std::error_code fault;
-  if (!fs::is_directory(folder, fault)) throw InvalidInput(folder.string() + ": is not a folder");
+  if (!isFolder(folder)) throw InvalidInput(folder.string() + ": is not a folder");
   const auto entries = entriesOf(folder);
   const auto has = [&](const std::string& name) {
     return std::ranges::any_of(entries,
@@ -183,7 +183,7 @@ SubjectFiles findSubjectFiles(const fs::path& folder) {
                        (folder / "ses-01").string());
   }
   if (folder.filename() == "anat" || std::ranges::any_of(entries, [](const fs::path& entry) {
-        return entry.filename().string().starts_with("sub-") && !fs::is_directory(entry);
+        return entry.filename().string().starts_with("sub-") && !isFolder(entry);
       })) {
     return inAnatFolder(folder);
   }

@@ -3,6 +3,7 @@
 #include "CloseUps.h"
 
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/IO/VolumeFile.h"
 
@@ -16,8 +17,7 @@ namespace fs = std::filesystem;
 
 /// Rows of a table of this program; none if there is no such file.
 std::vector<TableRow> rowsOf(const fs::path& file) {
-  std::error_code fault;
-  return fs::exists(file, fault) ? tableRows(fileText(file)) : std::vector<TableRow>();
+  return isThere(file) ? tableRows(fileText(file)) : std::vector<TableRow>();
 }
 
 /// A cube of the image, and what of its tissue has no thickness.

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "CloseUps.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/SurfaceFile.h"
@@ -42,7 +43,7 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
   auto& mosaics = results.content().mosaics;
   const std::vector<CrossingPair> pairs = crossingPairs(step);
   const auto source = inputOf(step, "SURFACE");
-  if (pairs.empty() || !source || !std::filesystem::exists(*source)) return;
+  if (pairs.empty() || !source || !isThere(*source)) return;
   const bool shown =
       std::ranges::any_of(mosaics, [](const auto& mosaic) { return mosaic.id == kCrossingPlace; });
   if (shown) return;

@@ -8,6 +8,7 @@
 #include "ReportParts.h"
 
 #include "Explica/Core/FileText.h"
+#include "Explica/Core/Folders.h"
 
 #include <Eigen/Geometry>
 
@@ -42,10 +43,10 @@ std::optional<FlatPatch> readPatch(const StepFolder& step) {
   patch.vertices = patchVertices(step);
   patch.flat = io::readSurface(step.folder / "patch_flat.surf.gii").mesh;
   const auto given = inputOf(step, "SURFACE"), reference = inputOf(step, "reference");
-  if (!given || !fs::exists(*given)) return {};
+  if (!given || !isThere(*given)) return {};
   io::LoadedSurface surface = io::readSurface(*given);
   patch.side = surface.metadata.structure == "CortexRight" ? "right" : "left";
-  if (reference && fs::exists(*reference)) {
+  if (reference && isThere(*reference)) {
     patch.unfolded = std::move(surface.mesh);
     patch.reference = io::readSurface(*reference).mesh;
   } else {
@@ -197,8 +198,7 @@ void chartDistortion(ResultFolder& results, const StepFolder& step) {
 
 void showPicture(ResultFolder& results, const StepFolder& step) {
   const std::filesystem::path file = step.folder / "flat.png";
-  std::error_code fault;
-  if (!std::filesystem::exists(file, fault)) return;
+  if (!isThere(file)) return;
   const std::filesystem::directory_iterator files(step.folder);
   const bool outlined = std::any_of(begin(files), end(files), [](const auto& entry) {
     const std::string name = entry.path().filename().string();

@@ -3,6 +3,7 @@
 #include "Explica/Pipeline/FolderReport.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Termination.h"
 #include "References.h"
 #include "ReportParts.h"
@@ -169,7 +170,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
     throw InvalidInput("slices: must be between 1 and " + std::to_string(kMostSlices));
   }
   requireThickness(options.references);
-  if (!fs::is_directory(folder)) throw InvalidInput(folder.string() + ": no such folder");
+  if (!isFolder(folder)) throw InvalidInput(folder.string() + ": no such folder");
   report::ReportContent content;
   content.title = fs::weakly_canonical(folder).filename().string();
   ResultFolder results(folder, monitor, content);

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "ReportParts.h"
 
@@ -12,7 +13,7 @@ ShownFrames readInflated(const StepFolder& step) {
   if (!frames.meshes.empty()) return frames;
   const TriangleMesh after = io::readSurface(step.folder / "inflated.surf.gii").mesh;
   const auto source = inputOf(step, "SURFACE");
-  if (source && std::filesystem::exists(*source)) {
+  if (source && isThere(*source)) {
     TriangleMesh before = io::readSurface(*source).mesh;
     if (before.vertexCount() == after.vertexCount()) {
       frames.meshes.push_back({std::move(before.positions), after.faces});

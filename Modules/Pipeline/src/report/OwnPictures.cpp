@@ -57,8 +57,7 @@ void showOwnPictures(ResultFolder& results, const StepFolder& step) {
   for (const fs::path& file : entriesOf(step.folder)) {
     if (mediaTypeOf(file).empty() || !fs::is_regular_file(file)) continue;
     // Of a picture in both forms the drawing is sharper.
-    if (file.extension() == ".png" && fs::exists(fs::path(file).replace_extension(".svg")))
-      continue;
+    if (file.extension() == ".png" && isThere(fs::path(file).replace_extension(".svg"))) continue;
     if (fs::file_size(file) <= kLargestPicture) files.push_back(file);
   }
   if (files.size() > kMostPictures) files.resize(kMostPictures);

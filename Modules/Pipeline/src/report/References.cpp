@@ -28,7 +28,7 @@ struct ThicknessFile {
 std::vector<ThicknessFile> freeSurfersOwn(const fs::path& subject) {
   std::vector<ThicknessFile> found;
   for (const auto& [name, side] : {std::pair{"lh.thickness", "left"}, {"rh.thickness", "right"}}) {
-    if (fs::exists(subject / "surf" / name)) found.push_back({subject / "surf" / name, side});
+    if (isThere(subject / "surf" / name)) found.push_back({subject / "surf" / name, side});
   }
   return found;
 }
@@ -36,7 +36,7 @@ std::vector<ThicknessFile> freeSurfersOwn(const fs::path& subject) {
 /// A result of `explica surface`; none of another command.
 std::optional<ThicknessFile> resultIn(const fs::path& folder) {
   const fs::path file = folder / "thickness.shape.gii";
-  if (!fs::exists(file) || !fs::exists(folder / provenance::kRecordName)) return {};
+  if (!isThere(file) || !isThere(folder / provenance::kRecordName)) return {};
   StepFolder step;
   step.name = folder.filename().string();
   step.record = provenance::readRecord(folder / provenance::kRecordName);
@@ -70,7 +70,7 @@ Eigen::VectorXd valuesOf(const std::vector<ThicknessFile>& files) {
 }
 
 std::vector<ThicknessFile> filesUnder(const std::string& folder) {
-  if (!fs::is_directory(folder)) throw InvalidInput("reference: " + folder + ": no such folder");
+  if (!isFolder(folder)) throw InvalidInput("reference: " + folder + ": no such folder");
   std::vector<ThicknessFile> files;
   search(folder, kDeepest, files);
   if (files.empty()) {

@@ -48,17 +48,17 @@ ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
                            report::ReportContent& content)
     : monitor_(monitor), content_(content) {
   notes_ = readRunState(folder / kRunStateName);
-  if (notes_.empty() && fs::exists(folder / provenance::kRecordName)) {
+  if (notes_.empty() && isThere(folder / provenance::kRecordName)) {
     add(folder, fs::weakly_canonical(folder).filename().string());
   }
   for (const StepNote& note : notes_) {
-    if (fs::exists(folder / note.name / provenance::kRecordName)) {
+    if (isThere(folder / note.name / provenance::kRecordName)) {
       add(folder / note.name, note.name);
     }
   }
   if (steps_.empty() && notes_.empty()) {
     const fs::path record = folder / provenance::kRecordName;
-    if (fs::exists(record)) static_cast<void>(provenance::readRecord(record));  // why it cannot be
+    if (isThere(record)) static_cast<void>(provenance::readRecord(record));  // why it cannot be
     throw InvalidInput(folder.string() +
                        ": no command has written it (it holds no provenance.json); give the --out "
                        "folder of a command or run");
@@ -101,7 +101,7 @@ void ResultFolder::add(const fs::path& folder, const std::string& name) {
   attempt("Record of " + name, [&] {
     step.record = provenance::readRecord(folder / provenance::kRecordName);
     step.command = step.record.value("command", "");
-    if (fs::exists(folder / provenance::kSummaryName)) {
+    if (isThere(folder / provenance::kSummaryName)) {
       step.summary = provenance::readJson(folder / provenance::kSummaryName);
     }
     steps_.push_back(std::move(step));
@@ -155,7 +155,7 @@ std::vector<fs::path> filesOf(const StepFolder& step, std::string_view ending) {
 
 std::optional<io::VertexMap> mapNamed(const fs::path& file, Eigen::Index vertexCount,
                                       std::string_view name) {
-  if (!fs::exists(file)) return {};
+  if (!isThere(file)) return {};
   for (io::VertexMap& map : io::readVertexMaps(file, vertexCount)) {
     if (map.name == name || name.empty()) return std::move(map);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/Results.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -30,9 +31,7 @@ struct StepFolder {
 
   [[nodiscard]] std::optional<double> number(std::string_view key) const;
   [[nodiscard]] std::string text(std::string_view key) const;  ///< of the summary; empty if absent
-  [[nodiscard]] bool has(std::string_view file) const {
-    return std::filesystem::exists(folder / file);
-  }
+  [[nodiscard]] bool has(std::string_view file) const { return isThere(folder / file); }
   /// "left", "right", or empty where the step is about neither or both.
   [[nodiscard]] std::string side() const;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "../Table.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -31,7 +32,7 @@ struct Middle {
 
 std::optional<Middle> middleOf(const StepFolder& step) {
   const auto white = inputOf(step, "white"), pial = inputOf(step, "pial");
-  if (!white || !pial || !fs::exists(*white) || !fs::exists(*pial)) return {};
+  if (!white || !pial || !isThere(*white) || !isThere(*pial)) return {};
   const io::LoadedSurface inner = io::readSurface(*white);
   TriangleMesh mesh = inner.mesh;
   const Positions outer = io::readSurface(*pial).mesh.positions;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "CloseUps.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Maps/Folding.h"
@@ -37,7 +38,7 @@ struct Hemisphere {
 /// or of fMRIPrep.
 std::optional<fs::path> scanBeside(const fs::path& labels) {
   for (const char* name : {"brain.mgz", "T1.mgz", "norm.mgz", "orig.mgz"}) {
-    if (labels.parent_path().filename() == "mri" && fs::exists(labels.parent_path() / name)) {
+    if (labels.parent_path().filename() == "mri" && isThere(labels.parent_path() / name)) {
       return labels.parent_path() / name;
     }
   }
@@ -46,19 +47,19 @@ std::optional<fs::path> scanBeside(const fs::path& labels) {
   if (at == std::string::npos) return {};
   const fs::path scan =
       labels.parent_path() / (name.substr(0, at) + "_desc-preproc_T1w" + name.substr(at + 5));
-  return fs::exists(scan) ? std::optional(scan) : std::nullopt;
+  return isThere(scan) ? std::optional(scan) : std::nullopt;
 }
 
 /// The image on which a surface is judged: the T1, or what lies beside the labels, or the labels.
 std::optional<fs::path> imageOf(const ResultFolder& results, const StepFolder& step) {
   for (const char* role : {"image", "T1"}) {
-    if (const auto image = inputOf(step, role); image && fs::exists(*image)) return image;
+    if (const auto image = inputOf(step, role); image && isThere(*image)) return image;
   }
   for (const StepFolder* segment : results.stepsOf("segment")) {
-    if (const auto image = inputOf(*segment, "T1"); image && fs::exists(*image)) return image;
+    if (const auto image = inputOf(*segment, "T1"); image && isThere(*image)) return image;
   }
   const auto labels = inputOf(step, "SEG");
-  if (!labels || !fs::exists(*labels)) return {};
+  if (!labels || !isThere(*labels)) return {};
   return scanBeside(*labels).value_or(*labels);
 }
 
@@ -155,7 +156,7 @@ void addGiven(ResultFolder& results, const std::vector<Hemisphere>& all,
 
 /// Regions for the view in three dimensions.
 void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
-  if (!fs::exists(file)) return;
+  if (!isThere(file)) return;
   const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
   report::EvolutionLabels named{title, {}, {}};
   std::map<Label, std::int32_t> entryOf;

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeFile.h"
 #include "MaskBorder.h"
 #include "ReportParts.h"
@@ -18,7 +19,7 @@ constexpr int kSmallTile = 150;  // pixels, of tiles where two images are compar
 void showTemplate(ResultFolder& results, const StepFolder& step,
                   const report::MosaicOptions& options) {
   const auto image = inputOf(step, "T1");
-  if (!step.has("atlas.nii.gz") || !image || !std::filesystem::exists(*image)) return;
+  if (!step.has("atlas.nii.gz") || !image || !isThere(*image)) return;
   const Volume<float> head = io::readScalars(*image, {.dimension = 3}).volume;
   const auto found = brainOf(step, head.grid);
   report::MosaicOptions drawing = options;
@@ -38,7 +39,7 @@ void showTemplate(ResultFolder& results, const StepFolder& step,
 void showPreparation(ResultFolder& results, const StepFolder& step,
                      const report::MosaicOptions& options) {
   const auto file = inputOf(step, "T1");
-  if (!file || !std::filesystem::exists(*file)) return;
+  if (!file || !isThere(*file)) return;
   io::VolumeReadOptions reading{.dimension = 3};
   const Volume<float> image = io::readScalars(*file, reading).volume;
   report::MosaicOptions small = options;

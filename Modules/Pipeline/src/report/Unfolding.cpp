@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
@@ -74,7 +75,7 @@ std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolde
 Unfolded readUnfolded(const StepFolder& step, std::size_t mostFrames) {
   Unfolded unfolded;
   const auto source = inputOf(step, "SURFACE");
-  if (source && fs::exists(*source)) unfolded.whole = io::readSurface(*source).mesh;
+  if (source && isThere(*source)) unfolded.whole = io::readSurface(*source).mesh;
   ShownFrames frames = framesOf(step, mostFrames);
   unfolded.frames = std::move(frames.meshes);
   unfolded.titles = std::move(frames.titles);

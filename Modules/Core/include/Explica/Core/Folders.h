@@ -9,6 +9,13 @@
 
 namespace explica {
 
+/// Whether there is such a file or folder; false, too, where nobody can tell: a loop of links, a
+/// folder that may not be read.  Who opens it then says why it cannot be opened.
+[[nodiscard]] bool isThere(const std::filesystem::path& path);
+
+/// The same for a folder.
+[[nodiscard]] bool isFolder(const std::filesystem::path& path);
+
 /// Paths of a folder's entries, by name: those whose names are wanted.  None if there is no folder.
 [[nodiscard]] std::vector<std::filesystem::path> entriesOf(
     const std::filesystem::path& folder,
