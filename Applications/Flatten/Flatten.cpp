@@ -248,7 +248,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
   const double read = secondsSince(begin);
   // What comes after cuts and map, in times of the start, which reads one surface.
-  constexpr double kRest = 3, kEachFrame = 0.5;
+  constexpr double kRest = 2, kEachFrame = 0.5;
   const TimeKept rest(read * (kRest + kEachFrame * options.frames));
   const Made made = make(context, s, subject, std::move(whole), options);
   const StopScope kept(nullptr);  // what is reached is written

@@ -120,7 +120,7 @@ Termination run(Context& context, const InflateSettings& s) {
   {
     auto step = context.step("inflate");
     // What comes after the iterations, in times of the start, which reads and tests one surface.
-    constexpr double kRest = 2, kEachFrame = 0.5;
+    constexpr double kRest = 1, kEachFrame = 0.5;
     const TimeKept rest(started * (kRest + kEachFrame * s.inflate.frames));
     u.result = inflation::inflate(u.before, s.inflate, context.monitor(),
                                   checkpoint ? &*checkpoint : nullptr);

@@ -40,8 +40,8 @@ std::string bashValues(const Json& p) {
     for (const Json& choice : p["choices"]) words += " " + word(choice);
     return "-W" + words;
   }
-  if (isFolder(p) || p["name"] == "out") return "-d";
-  const bool textOrFile = isFile(p) || (p["type"] == "text" && p["placeholder"] != "N");
+  if (takesFolder(p) || p["name"] == "out") return "-d";
+  const bool textOrFile = takesFile(p) || (p["type"] == "text" && p["placeholder"] != "N");
   return textOrFile ? "-f" : "-W";
 }
 

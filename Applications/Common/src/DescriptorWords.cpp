@@ -29,10 +29,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-bool isFile(const Json& p) {
+bool takesFile(const Json& p) {
   return !p["file"].is_null() && p["file"] != "folder";
 }
-bool isFolder(const Json& p) {
+bool takesFolder(const Json& p) {
   return p["file"] == "folder";
 }
 bool isFlag(const Json& p) {

@@ -22,8 +22,8 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
 
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,
                                    const std::string& to);
-[[nodiscard]] bool isFile(const Json& p);
-[[nodiscard]] bool isFolder(const Json& p);
+[[nodiscard]] bool takesFile(const Json& p);
+[[nodiscard]] bool takesFolder(const Json& p);
 [[nodiscard]] bool isFlag(const Json& p);
 [[nodiscard]] std::string word(const Json& value);
 /// Help with unit, as one sentence.
