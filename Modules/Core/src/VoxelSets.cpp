@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Core/VoxelSets.h"
 
+#include "Explica/Core/GridLines.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -81,20 +82,17 @@ Volume<float> squaredDistanceTo(const VoxelSet& set) {
   for (std::size_t v = 0; v < set.size(); ++v) {
     if (set[v] != 0) squared[v] = 0;
   }
-  std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const int length = grid.size[axis];
-    const std::size_t lines = grid.voxelCount() / static_cast<std::size_t>(length);
-    parallelForBlocks(lines, 512, [&](std::size_t begin, std::size_t end) {
-      Line line(length);
+    const GridLines lines(grid.size, axis);
+    parallelForBlocks(lines.count, 512, [&](std::size_t begin, std::size_t end) {
+      Line line(lines.length);
       for (std::size_t l = begin; l < end; ++l) {
-        const std::size_t start = (l / stride) * stride * length + l % stride;
-        for (int p = 0; p < length; ++p) line.f[p] = squared[start + p * stride];
+        float* const start = squared.data.data() + lines.begin(l);
+        for (int p = 0; p < lines.length; ++p) line.f[p] = start[p * lines.stride];
         axis == 0 ? nearestOf(line, grid.spacing[axis]) : envelope(line, grid.spacing[axis]);
-        for (int p = 0; p < length; ++p) squared[start + p * stride] = line.f[p];
+        for (int p = 0; p < lines.length; ++p) start[p * lines.stride] = line.f[p];
       }
     });
-    stride *= static_cast<std::size_t>(length);
   }
   return squared;
 }

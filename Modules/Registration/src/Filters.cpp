@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Filters.h"
 
+#include "Explica/Core/GridLines.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -11,26 +12,11 @@
 namespace explica::registration {
 namespace {
 
-/// Lines of a grid along one axis: number, length, stride, and where each begins.
-struct Lines {
-  std::size_t count, stride;
-  int length;
-  [[nodiscard]] std::size_t begin(std::size_t line) const {
-    return (line / stride) * stride * static_cast<std::size_t>(length) + line % stride;
-  }
-};
-
-Lines linesAlong(const Grid& grid, int axis) {
-  std::size_t stride = 1;
-  for (int a = 0; a < axis; ++a) stride *= static_cast<std::size_t>(grid.size[a]);
-  return {grid.voxelCount() / static_cast<std::size_t>(grid.size[axis]), stride, grid.size[axis]};
-}
-
 /// Replaces each line of the volume by what `filter` makes of it.
 /// @param margin  values before and after the line that the filter is given: those at its ends
 template <class Filter>
 void filterLines(Volume<float>& volume, int axis, int margin, const Filter& filter) {
-  const Lines lines = linesAlong(volume.grid, axis);
+  const GridLines lines(volume.grid.size, axis);
   parallelForBlocks(lines.count, 512, [&](std::size_t first, std::size_t last) {
     std::vector<float> in(static_cast<std::size_t>(lines.length + 2 * margin));
     std::vector<float> out(static_cast<std::size_t>(lines.length));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "BlockWindow.h"
 
+#include "Explica/Core/GridLines.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -72,24 +73,20 @@ void BlockWindow::smoothAlong(std::vector<double>& values, int axis) const {
   std::vector<double> kernel(static_cast<std::size_t>(2 * radius + 1));
   for (int r = -radius; r <= radius; ++r)
     kernel[r + radius] = std::exp(-0.5 * r * r / (sigma * sigma));
-  std::size_t stride = 1;
-  for (int a = 0; a < axis; ++a) stride *= static_cast<std::size_t>(size_[a]);
-  const int length = size_[axis];
-  parallelForBlocks(count() / static_cast<std::size_t>(length), kLineGrain,
-                    [&](std::size_t begin, std::size_t end) {
-                      std::vector<double> line(length);
-                      for (std::size_t l = begin; l < end; ++l) {
-                        const std::size_t start = (l / stride) * stride * length + l % stride;
-                        for (int s = 0; s < length; ++s) line[s] = values[start + s * stride];
-                        for (int s = 0; s < length; ++s) {
-                          double sum = 0;
-                          const int low = std::max(0, s - radius),
-                                    high = std::min(length - 1, s + radius);
-                          for (int t = low; t <= high; ++t) sum += kernel[t - s + radius] * line[t];
-                          values[start + s * stride] = sum;
-                        }
-                      }
-                    });
+  const GridLines lines(size_, axis);
+  parallelForBlocks(lines.count, kLineGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> line(lines.length);
+    for (std::size_t l = begin; l < end; ++l) {
+      double* const start = values.data() + lines.begin(l);
+      for (int s = 0; s < lines.length; ++s) line[s] = start[s * lines.stride];
+      for (int s = 0; s < lines.length; ++s) {
+        double sum = 0;
+        const int low = std::max(0, s - radius), high = std::min(lines.length - 1, s + radius);
+        for (int t = low; t <= high; ++t) sum += kernel[t - s + radius] * line[t];
+        start[s * lines.stride] = sum;
+      }
+    }
+  });
 }
 
 std::vector<double> BlockWindow::sums(const std::vector<std::size_t>& voxel,

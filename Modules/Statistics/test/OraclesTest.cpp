@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inputs and outputs of another program (BrainStat, after SurfStat): ../shared/data/
 // brainstat_oracles.  Multivariate statistics (k > 1), lattices of voxels and designs with more
-// columns than people are not ours.
+// columns than people are not ours; its smoothing (statsmo) counts edges, ours millimetres.
 #include "Explica/Core/Types.h"
 #include "Explica/Statistics/Clusters.h"
 #include "Explica/Statistics/Distributions.h"
