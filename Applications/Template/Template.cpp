@@ -13,7 +13,7 @@
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Parcellation.h"
 #include "Explica/Sphere/Average.h"
-#include "Explica/Sphere/SphereMap.h"
+#include "Folding.h"
 
 #include <algorithm>
 #include <array>
@@ -112,18 +112,12 @@ TriangleMesh readMesh(Context& context, const std::string& file) {
       .mesh;
 }
 
-sphere::FoldingSphere readFolding(Context& context, const Person& person) {
-  sphere::FoldingSphere folding;
-  folding.sphere = readMesh(context, person.sphere);
-  sphere::requireSphere(folding.sphere, person.sphere);
-  maps::requireSphere(folding.sphere, "'" + person.sphere + "'");
-  const Eigen::Index count = folding.sphere.vertexCount();
-  const auto map = [&](const std::string& file) -> Eigen::VectorXd {
-    return io::readVertexMaps(context.input(file, "person"), count).front().values;
-  };
-  folding.sulc = map(person.sulc);
-  folding.curvature = map(person.curvature);
-  return folding;
+sphere::FoldingSphere foldingOf(Context& context, const Person& person) {
+  FoldingFiles files;
+  files.sphere = person.sphere;
+  files.sulc = person.sulc;
+  files.curvature = person.curvature;
+  return readFolding(context, files, "person");
 }
 
 /// White and pial surface of the template.
@@ -223,7 +217,7 @@ std::vector<TemplateSide> readSides(Context& context, const TemplateSettings& s)
                    (structure == "CortexLeft" ? "left" : "right") + " hemisphere: it is left out");
     }
     if (side.people.size() < 2) continue;
-    for (const Person& person : side.people) side.folds.push_back(readFolding(context, person));
+    for (const Person& person : side.people) side.folds.push_back(foldingOf(context, person));
     sides.push_back(std::move(side));
   }
   if (!sides.empty()) return sides;
