@@ -137,6 +137,7 @@ void describeThickness(Results& t, const SurfaceSummary& s, const CorticalSurfac
            "Over the area of the tissue's middle surface, whatever the number of faces. The mean "
            "over the tissue's voxels is greater: a thick column holds more voxels.",
            where(known, means.mean))
+      .usual(2.3, 3.1, "95 % of 1,035 people of 6 to 64 years, ABIDE I by FreeSurfer 6")
       .inHead()
       .compared();
   t.number("thickness_sd", "Standard deviation of the thickness", "mm", "Over the same area.",
