@@ -28,6 +28,18 @@ void drawScaleBar(Picture& picture, double pixelsPerMillimetre, int width, int h
            (from + to) / 2 - Eigen::Vector2d(0, 0.6 * letters), letters, kInk, TextAnchor::Middle);
 }
 
+/// The body's directions about a point, each with its letter at the end of a line.
+void drawCompass(Picture& picture, const FlatMarks& marks, const Eigen::Vector2d& middle,
+                 double letters) {
+  for (const auto& [direction, letter] : marks.directions) {
+    const Eigen::Vector2d way(direction.x(), -direction.y());  // y downwards
+    drawSegments(picture, {{middle, middle + 2 * letters * way}}, kInk, letters / 8);
+    drawTextWithRim(picture, letter,
+                    middle + 2.9 * letters * way + Eigen::Vector2d(0, 0.5 * letters), letters, kInk,
+                    kPaper, TextAnchor::Middle);
+  }
+}
+
 /// A piece of an outline in pixels, y downwards.
 struct Stroke {
   Segment2 line;
@@ -62,7 +74,8 @@ struct Box {
   }
 };
 
-/// Names, each at its place or as near above or below as keeps it off those already written.
+/// Names, each at its place or as near above or below as keeps it off those already written; none
+/// where there is no room.
 void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, std::string>>& names,
                int width, double letters) {
   constexpr std::array kRowsAside = {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0};
@@ -79,7 +92,8 @@ void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, st
       const Box box = boxAt(row);
       return std::ranges::none_of(taken, [&](const Box& b) { return b.meets(box); });
     });
-    const Box box = boxAt(free == kRowsAside.end() ? 0.0 : *free);
+    if (free == kRowsAside.end()) continue;  // a name over another can be read no more than none
+    const Box box = boxAt(*free);
     taken.push_back(box);
     drawTextWithRim(picture, name, {x, box.high.y() - 0.35 * letters}, letters, kInk, kPaper,
                     TextAnchor::Middle);
@@ -130,6 +144,9 @@ Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Fla
   for (const auto& [place, name] : marks.names) names.emplace_back(pixelOf(place), name);
   drawNames(picture, names, options.width, std::clamp(height / 56.0, 9.0, 18.0));
   drawScaleBar(picture, scale, options.width, options.height);
+  const double letters = std::clamp(height / 60.0, 9.0, 16.0);
+  drawCompass(picture, marks, {options.width - 4.5 * letters, options.height - 4.5 * letters},
+              letters);
   return picture;
 }
 
