@@ -30,14 +30,12 @@ std::string rounded(const std::string& text) {
   return printed("%.1f", number);
 }
 
-// In addition to the style that all pages share.
 constexpr char kStyle[] =
-    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 "
-    "1em}.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid "
-    "#d5d9dd;padding:4px "
-    "10px;text-align:left;vertical-align:top}td.n{text-align:right}th{background:#f1f3f5}tr.bad{"
-    "background:#fbf0ee}td.wide{padding:8px 10px "
-    "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
+    R"(:root{color-scheme:light dark;--ink:#1a1d21;--paper:#fff;--line:#d5d9dd;--soft:#f1f3f5;--bad:#fbf0ee;--link:#145ab4}
+@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--paper:#16191d;--line:#3a424b;--soft:#20252b;--bad:#3a2321;--link:#7ab8ee}}
+body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:1180px;margin:2em auto;padding:0 1em}
+.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid var(--line);padding:4px 10px;text-align:left;vertical-align:top}
+td.n{text-align:right}th{background:var(--soft)}tr.bad{background:var(--bad)}td.wide{padding:8px 10px 20px}img{height:460px;background:#fff}a{color:var(--link)})";
 
 /// A line of numbers, and below it the pictures or what went wrong.
 std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
@@ -57,7 +55,7 @@ std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) 
   if (row.pictured) {
     const std::string folder = escapeHtml(row.folder.generic_string());
     text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
-            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.png\"></a>";
+            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.svg\"></a>";
   }
   return text + "</td></tr>\n";
 }
