@@ -69,19 +69,20 @@ std::string heartPage(const std::vector<HeartRow>& rows, const std::string& titl
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
-      escapeHtml(title) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" +
+      escapeHtml(title) + "</title><style>" + kStyle + "</style></head><body><main>\n<h1>" +
       escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
       std::to_string(rows.size()) +
       " hearts are done. All numbers, segments too, are in <a href=\"hearts.tsv\">hearts.tsv</a>; "
       "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
-      "<div class=\"scroll\"><table><tr><th>heart</th><th>state</th>";
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"hearts\"><table><tr><th>heart</th><th>state</th>";
   for (const std::string& name : about) text += "<th>" + escapeHtml(name) + "</th>";
   for (const HeartColumn& column : kShown) {
     text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
   }
   text += "</tr>\n";
   for (const HeartRow& row : rows) text += pageRow(row, about);
-  return text + "</table></div>\n</body></html>\n";
+  return text + "</table></div>\n</main></body></html>\n";
 }
 
 }  // namespace explica::study
