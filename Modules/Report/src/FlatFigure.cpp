@@ -74,12 +74,27 @@ struct Box {
   }
 };
 
+/// The right corner of a picture, below or above, where more is paper.
+Box freerCorner(const Picture& picture, int size) {
+  const auto paperBelow = [&](int top) {
+    int count = 0;
+    for (int y = top; y < top + size; ++y) {
+      for (int x = picture.width - size; x < picture.width; ++x) {
+        count += picture.pixel(x, y)[0] == 255;
+      }
+    }
+    return count;
+  };
+  const int bottom = picture.height - size;
+  const Eigen::Vector2d low(picture.width - size, paperBelow(0) > paperBelow(bottom) ? 0 : bottom);
+  return {low, low + Eigen::Vector2d::Constant(size)};
+}
+
 /// Names, each at its place or as near above or below as keeps it off those already written; none
 /// where there is no room.
 void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, std::string>>& names,
-               int width, double letters) {
+               std::vector<Box> taken, int width, double letters) {
   constexpr std::array kRowsAside = {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0};
-  std::vector<Box> taken;
   for (const auto& [place, name] : names) {
     const double half = 0.5 * textWidth(name, letters) + 0.3 * letters;
     const double x = std::clamp(place.x(), half, std::max(half, width - half));
@@ -140,13 +155,18 @@ Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Fla
     strokes.push_back({{pixelOf(line.from), pixelOf(line.to)}, line.left, line.right});
   }
   drawOutlines(picture, strokes, height / 330.0);
+  const double letters = std::clamp(height / 60.0, 9.0, 16.0);
+  std::vector<Box> taken;
+  if (!marks.directions.empty()) {
+    taken.push_back(freerCorner(picture, static_cast<int>(9 * letters)));
+  }
   std::vector<std::pair<Eigen::Vector2d, std::string>> names;
   for (const auto& [place, name] : marks.names) names.emplace_back(pixelOf(place), name);
-  drawNames(picture, names, options.width, std::clamp(height / 56.0, 9.0, 18.0));
+  drawNames(picture, names, taken, options.width, std::clamp(height / 56.0, 9.0, 18.0));
   drawScaleBar(picture, scale, options.width, options.height);
-  const double letters = std::clamp(height / 60.0, 9.0, 16.0);
-  drawCompass(picture, marks, {options.width - 4.5 * letters, options.height - 4.5 * letters},
-              letters);
+  if (!taken.empty()) {
+    drawCompass(picture, marks, (taken.front().low + taken.front().high) / 2, letters);
+  }
   return picture;
 }
 

@@ -342,6 +342,14 @@ TEST(FlatFigure, DirectionsStandInTheCorner) {
   EXPECT_GT(changed(right - 80, right, 380, 412), 20) << "the letter above";
   EXPECT_EQ(changed(right - 80, right, 415, 450), 0) << "and nothing below its foot";
   EXPECT_EQ(changed(0, right - 80, 0, 450), 0);
+  marks.names.emplace_back(Point(39, 3, 0), "a name");
+  const Picture named = flatPanel(plane, paint, marks, 450);
+  EXPECT_NE(named.rgb, picture.rgb);
+  for (int y = 380; y < 450; ++y) {
+    for (int x = right - 70; x < right; ++x) {
+      ASSERT_EQ(named.pixel(x, y)[0], picture.pixel(x, y)[0]) << "names keep off the compass";
+    }
+  }
 }
 
 TEST(FlatFigure, ANameWithoutRoomIsLeftOut) {
