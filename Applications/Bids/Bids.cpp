@@ -104,7 +104,7 @@ void declare(Declaration& d, BidsSettings& s) {
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
       .output("README.md", FileKind::Any, "what is where")
       .output(".bidsignore", FileKind::Any, "kinds of files that BIDS does not know yet")
-      .varyingOutput("sub-*.html", FileKind::Report, "leads to the reports on a participant")
+      .varyingOutput("sub-*.html", FileKind::Report, "leads to the reports on a participant; not with --keep group")
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
@@ -233,7 +233,7 @@ Termination doParticipants(Context& context, const BidsSettings& s) {
       if (ended == Ended::Failed) failed.push_back(name);
       if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
-    if (!context.given("dry-run")) writePage(context, participant);
+    if (!context.given("dry-run") && s.keep == Keep::All) writePage(context, participant);
   }
   context.result("hemispheres_done", done);
   context.result("hemispheres_failed", failed.size());

@@ -49,7 +49,7 @@ struct FigureSettings {
 void declare(Declaration& d, FigureSettings& s) {
   d.synopsis("a figure for print: surfaces of both hemispheres, flat maps, one colour bar")
       .description(
-          R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names. All surfaces have one scale, all maps one colour bar. figure.svg has a layer for the pictures, one for the titles and one for the colour bar, whose text can be edited.)")
+          R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names, and with a folded surface of the same mesh in the figure the directions of the body are shown. All surfaces have one scale, all maps one colour bar. figure.svg has a layer for the pictures, one for the titles and one for the colour bar, whose text can be edited.)")
       .example(
           "explica figure lh.inflated rh.inflated lh.thickness rh.thickness lh.sulc rh.sulc --out "
           "figure",
@@ -223,7 +223,21 @@ report::ViewName viewOf(FigureSide side, bool right) {
   }
 }
 
-report::Panel panelOf(const Shown& shown, const std::optional<FigureSide>& side) {
+/// Places of a flat map's vertices on a folded surface of the figure; none without one of its mesh.
+std::optional<Positions> foldedOf(const Shown& flat, const std::vector<Shown>& all) {
+  const ShownSurface& map = flat.surface;
+  const Eigen::Index whole = map.origin.empty() ? map.mesh.vertexCount() : map.wholeCount;
+  for (const Shown& other : all) {
+    if (other.flat || other.side != flat.side || other.surface.mesh.vertexCount() != whole)
+      continue;
+    const Positions& positions = other.surface.mesh.positions;
+    return map.origin.empty() ? positions : Positions(positions(map.origin, Eigen::all));
+  }
+  return {};
+}
+
+report::Panel panelOf(const Shown& shown, const std::optional<FigureSide>& side,
+                      const std::vector<Shown>& all) {
   const std::string name = shown.side ? std::string(nameOf(*shown.side)) : "";
   report::Panel panel{&shown.surface.mesh, shown.paint, report::ViewName::Top, {}, name};
   if (side) {
@@ -231,6 +245,9 @@ report::Panel panelOf(const Shown& shown, const std::optional<FigureSide>& side)
     panel.title += (name.empty() ? "" : ", ") + std::string(nameOf(*side));
   } else {
     panel.marks.emplace();
+    if (const auto folded = foldedOf(shown, all)) {
+      pipeline::markDirections(*folded, shown.surface.mesh, *panel.marks);
+    }
     if (shown.labels) pipeline::markRegions(*shown.labels, shown.surface.mesh, *panel.marks);
   }
   return panel;
@@ -244,12 +261,12 @@ std::vector<std::vector<report::Panel>> rowsOf(const FigureSettings& s,
   const bool grid = s.layout == FigureLayout::Grid, column = s.layout == FigureLayout::Column;
   for (const Shown& shown : all) {
     if (shown.flat) {
-      flat.push_back(panelOf(shown, {}));
+      flat.push_back(panelOf(shown, {}, all));
       continue;
     }
     if (column || rows.empty()) rows.resize(column ? rows.size() + 1 : grid ? s.views.size() : 1);
     for (std::size_t v = 0; v < s.views.size(); ++v) {
-      rows[grid ? v : rows.size() - 1].push_back(panelOf(shown, s.views[v]));
+      rows[grid ? v : rows.size() - 1].push_back(panelOf(shown, s.views[v], all));
     }
   }
   if (!flat.empty()) rows.push_back(std::move(flat));

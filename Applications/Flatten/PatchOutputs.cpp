@@ -210,6 +210,7 @@ void writePatchTable(Context& context, const FlattenSettings& s, const Subject& 
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
   std::vector<flattening::PatchRegions> rows;
   report::FlatMarks marks;
+  pipeline::markDirections(disc.mesh.positions, flat, marks);
   for (const io::LabelMap& regions : regionsOnPatch(s, disc, whole)) {
     flattening::PatchRegions& row = rows.emplace_back();
     row.keys = regions.keys;

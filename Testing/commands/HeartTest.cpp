@@ -143,6 +143,14 @@ TEST(HeartCommand, ImagesLieBeneathTheBoundariesAndBeat) {
   const std::string page = readText(folder / "shown/report.html");
   EXPECT_NE(page.find("image/gif"), std::string::npos);
   EXPECT_NE(page.find("href='#pictures'"), std::string::npos);
+  EXPECT_LT(page.find("<h3>Slices over time"), page.find("id='numbers'")) << "beside the verdict";
+  EXPECT_NE(page.find("48 to 71 % (healthy women 61 (SD 5), men 58 (SD 5) %"), std::string::npos);
+  if (fs::exists("/usr/bin/chromium") && fs::exists("/usr/bin/chromedriver")) {
+    const auto browser =
+        runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_drawings.py",
+                    folder / "shown/report.html"});
+    EXPECT_EQ(browser.exitCode, 0) << browser;
+  }
   // One frame for two, and one of other voxels.
   const auto few = explica(heart(folder, {"--image", first}));
   EXPECT_EQ(few.exitCode, 2) << few;
@@ -331,7 +339,7 @@ TEST(HeartCommand, AFolderOfHeartsBecomesATableOfPeople) {
   EXPECT_EQ(fs::last_write_time(folder / "out/sub-1/heart/segments.nii.gz"), before);
   EXPECT_EQ(tableOf(folder / "out/hearts.tsv")["state"][2], "done");
   EXPECT_FALSE(fs::exists(folder / "out/sub-3/heart/problem.txt"));
-  EXPECT_NE(readText(folder / "out/index.html").find("sub-2/heart/bullseye.png"),
+  EXPECT_NE(readText(folder / "out/index.html").find("sub-2/heart/bullseye.svg"),
             std::string::npos);
   const auto nobody =
       explica({"study", "hearts", folder / "data", folder / "out", "--participant-label", "9"});

@@ -45,9 +45,16 @@ TEST(Report, WorksInABrowserWithoutANetwork) {
   EXPECT_EQ(browser.exitCode, 0) << browser;
 
   // Of a run on both sides the reader chooses which patch to see.
-  const auto other = explica({"unfold", folder / "a.surf.gii", "--center", "0,40,0", "--radius",
-                              "11", "--direction", "0,1,0", "--max-iterations", "3", "--frames",
-                              "3", "--out", folder / "both/unfold-R"});
+  // Its patch is long, and in sight from end to end all the same.
+  const TriangleMesh mesh = io::readSurface(folder / "a.surf.gii").mesh;
+  io::LabelMap strip{"strip", {}, {{0, "???", {0, 0, 0, 0}}, {1, "strip", {1, 0, 0, 1}}}};
+  strip.keys = (mesh.positions.col(0).array().abs() < 5 && mesh.positions.col(1).array() > 0 &&
+                mesh.positions.col(2).array().abs() < 30)
+                   .cast<Label>();
+  io::writeGiftiLabel(folder / "strip.label.gii", strip, "CortexLeft");
+  const auto other = explica(
+      {"unfold", folder / "a.surf.gii", "--label", folder / "strip.label.gii", "--direction",
+       "0,1,0", "--max-iterations", "3", "--frames", "3", "--out", folder / "both/unfold-R"});
   ASSERT_TRUE(other.exitCode == 0 || other.exitCode == 3) << other;
   std::filesystem::copy(folder / "u", folder / "both/unfold-L");
   std::filesystem::copy(folder / "u/frames", folder / "both/unfold-L/frames");
@@ -89,6 +96,8 @@ TEST(Report, AnswersInTheOrderOfAReadersQuestions) {
     before = at;
   }
   EXPECT_NE(words.find("Average visibility"), std::string::npos);
+  EXPECT_EQ(readText(folder / "u/report.html").find("\"flux "), std::string::npos);
+  EXPECT_NE(words.find("Facing the viewpoint (1 = directly), after"), std::string::npos);
   for (const char* key : {"area_error", "visibility_final", "energy_", "edge_strain"}) {
     EXPECT_EQ(words.find(key), std::string::npos) << "a raw key: " << key;
   }
@@ -153,6 +162,8 @@ TEST(Report, ShowsSlicesInEitherConvention) {
     const std::size_t slices = words.find("<h3 id='slices'");
     ASSERT_NE(slices, std::string::npos);
     EXPECT_EQ(countOf(words.substr(0, slices), "class='tile'"), 2u) << "beside the verdict";
+    EXPECT_NE(words.substr(0, slices).find("Thickness, inflated"), std::string::npos);
+    EXPECT_NE(words.find("2.3 to 3.1 mm (95 % of 1,035 people"), std::string::npos);
     EXPECT_EQ(countOf(words.substr(slices), "class='tile'"), 9u);
   }
   EXPECT_EQ(explica({"report", folder / "s", "--slices", "0"}).exitCode, 1);

@@ -54,6 +54,23 @@ try:
         eventually(lambda: is_ready(driver, "canvas"))
         check("another patch is another picture", eventually(lambda: picture() != one))
         check("and is still chosen", driver.execute_script("return document.getElementById('which').value") == "1")
+    driver.execute_script("""const m = document.getElementById('map'); m.value = 'none';
+        m.dispatchEvent(new Event('change')); document.getElementById('reset').click();""")
+    drawn(driver)
+    cut = driver.execute_script("""
+        const from = document.getElementById('canvas'), to = document.createElement('canvas');
+        const width = to.width = from.width, height = to.height = from.height, pen = to.getContext('2d');
+        pen.drawImage(from, 0, 0);
+        const at = pen.getImageData(0, 0, width, height).data;
+        let patch = 0, rim = 0;
+        for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+            const i = 4 * (y * width + x);
+            if (at[i] < at[i + 2] + 40) continue;  // not the patch's orange
+            ++patch;
+            if (x < 2 || y < 2 || x >= width - 2 || y >= height - 2) ++rim;
+        }
+        return [patch, rim];""")
+    check("the patch is in sight from end to end %s" % cut, cut[0] > 100 and cut[1] == 0)
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": True})
     drawn(driver)

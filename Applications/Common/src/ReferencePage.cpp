@@ -42,8 +42,9 @@ void resultTable(std::ostringstream& out, const Results& results) {
     if (!result.unit.empty()) out << " (" << result.unit << ")";
     if (!result.meaning.empty()) out << ". " << escapeCell(result.meaning);
     for (const Limit& limit : result.limits) {
-      out << " " << escapeCell(result.expectation(limit)) << ", otherwise " << nameOf(limit.outside)
-          << ".";
+      out << " " << escapeCell(result.expectation(limit));
+      if (limit.outside != Judgement::Good) out << ", otherwise " << nameOf(limit.outside);
+      out << ".";
     }
     out << " |\n";
   }

@@ -76,6 +76,10 @@ Result& Result::exactly(double expected, Judgement otherwise, std::string source
   return within(expected, expected, otherwise, std::move(source));
 }
 
+Result& Result::usual(double least, double most, std::string source) {
+  return within(least, most, Judgement::Good, std::move(source));
+}
+
 Result& Result::after(std::string startKey) {
   start = std::move(startKey);
   return *this;
@@ -95,11 +99,13 @@ std::optional<Judgement> Result::judgement() const {
   const auto measure = measureOf(value);
   if (!measure || limits.empty()) return {};
   const Limit& limit = decisive(limits, *measure);
+  if (limit.outside == Judgement::Good) return {};
   return holds(limit, *measure) ? Judgement::Good : limit.outside;
 }
 
 std::string Result::expectation(const Limit& limit) const {
-  const std::string text = "expected " + rangeOf(*this, limit);
+  const std::string text =
+      (limit.outside == Judgement::Good ? "usual " : "expected ") + rangeOf(*this, limit);
   return limit.source.empty() ? text : text + " (" + limit.source + ")";
 }
 

@@ -49,6 +49,16 @@ TEST(Results, WhatIsNotKnownIsNotJudged) {
                    .judgement());
 }
 
+TEST(Results, AUsualRangeIsStatedAndJudgesNobody) {
+  Results t;
+  const Result& mean =
+      t.number("t", "Mean thickness", "mm", "", 3.4).usual(2.3, 3.1, "1,035 people");
+  EXPECT_FALSE(mean.judgement());
+  EXPECT_EQ(mean.sentence(), "Mean thickness: 3.4 mm; usual 2.3 to 3.1 mm (1,035 people)");
+  t["t"].limits.insert(t["t"].limits.begin(), {0, 3, Judgement::Look, ""});
+  EXPECT_EQ(t["t"].judgement(), Judgement::Look) << "another limit still judges";
+}
+
 TEST(Results, FlagsAndTextsHaveLimits) {
   Results t;
   EXPECT_EQ(t.flag("closed", "Closed", "", false).exactly(1, Judgement::Look, "").sentence(),

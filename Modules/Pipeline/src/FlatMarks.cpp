@@ -5,7 +5,10 @@
 #include "Explica/Flattening/PatchTable.h"
 #include "Explica/IO/VertexDataFile.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 
@@ -32,6 +35,23 @@ void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::
   std::ranges::stable_sort(bySize, [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [size, entry] : bySize) {
     if (places.contains(entry->key)) marks.names.emplace_back(places.at(entry->key), entry->name);
+  }
+}
+
+void markDirections(const Positions& folded, const TriangleMesh& flat, report::FlatMarks& marks) {
+  constexpr double kLeastShare = 0.4;  // of the variance; below, half of the map goes elsewhere
+  constexpr std::array kLetters = {std::array{"R", "L"}, std::array{"A", "P"},
+                                   std::array{"S", "I"}};
+  const Eigen::MatrixX2d at =
+      flat.positions.leftCols<2>().rowwise() - flat.positions.leftCols<2>().colwise().mean();
+  const Positions from = folded.rowwise() - folded.colwise().mean();
+  const Eigen::LDLT<Eigen::Matrix2d> moments((at.transpose() * at).eval());
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector2d gradient = moments.solve(at.transpose() * from.col(axis));
+    if ((at * gradient).squaredNorm() < kLeastShare * from.col(axis).squaredNorm()) continue;
+    if (!(gradient.norm() > 0)) continue;
+    marks.directions.emplace_back(gradient.normalized(), kLetters[axis][0]);
+    marks.directions.emplace_back(-gradient.normalized(), kLetters[axis][1]);
   }
 }
 

@@ -57,10 +57,8 @@ Json meaningOf(const Result& result) {
   if (result.isInHead) json["head"] = true;
   if (result.isCompared) json["compared"] = true;
   for (const Limit& limit : result.limits) json["limits"].push_back(limitJson(limit));
-  if (const auto judgement = result.judgement()) {
-    json["judgement"] = nameOf(*judgement);
-    json["sentence"] = result.sentence();
-  }
+  if (const auto judgement = result.judgement()) json["judgement"] = nameOf(*judgement);
+  if (!result.limits.empty()) json["sentence"] = result.sentence();
   return json;
 }
 

@@ -24,7 +24,7 @@ constexpr double kRight = 14;      // pixels, margin
 constexpr double kTop = 30;        // pixels, margin
 constexpr double kBottom = 46;     // pixels, margin
 constexpr int kBins = 48;          // of a histogram
-constexpr double kLegendRow = 16;  // pixels
+constexpr double kLegendRow = 18;  // pixels
 
 std::string number(double value) {
   return printed("%.2f", value);
@@ -35,14 +35,6 @@ std::string significant(double value) {
   const std::string text = printed("%.3g", value);
   const double rounded = std::stod(text);
   return std::abs(rounded) >= 1000 && std::abs(rounded) < 1e6 ? printed("%.0f", rounded) : text;
-}
-
-/// A step of 1, 2 or 5 times a power of ten that gives about five ticks.
-double tickStep(double range) {
-  const double raw = range / 5;
-  const double power = std::pow(10, std::floor(std::log10(raw)));
-  const double lead = raw / power;
-  return power * (lead < 1.5 ? 1 : (lead < 3.5 ? 2 : (lead < 7.5 ? 5 : 10)));
 }
 
 /// Axes and the map from values to the drawing; y is in powers of ten where it is logarithmic.
@@ -68,13 +60,8 @@ std::string text(double x, double y, std::string_view anchor, std::string_view c
 /// Where ticks stand on the y axis: on a logarithmic one at powers of ten, or at 1, 2 and 5 times
 /// these where it spans few of them.
 std::vector<double> yTicksOf(const Axes& axes) {
+  if (!axes.logarithmic) return roundTicks(axes.y0, axes.y1);
   std::vector<double> ticks;
-  if (!axes.logarithmic) {
-    const double step = tickStep(axes.y1 - axes.y0);
-    for (double y = std::ceil(axes.y0 / step - 1e-9) * step; y <= axes.y1 + 1e-9 * step; y += step)
-      ticks.push_back(y);
-    return ticks;
-  }
   constexpr double kFewDecades = 2, kManyDecades = 7;
   const double decades = axes.y1 - axes.y0;
   const int every = decades > kManyDecades ? static_cast<int>(std::ceil(decades / 5)) : 1;
@@ -101,8 +88,7 @@ std::string head(const Axes& axes, const ChartText& titles, bool yTicks, double 
   svg += text((kLeft + kWidth - kRight) / 2, kHeight - 8, "middle", titles.xTitle);
   svg +=
       text(-(kTop + kHeight - kBottom) / 2, 14, "middle", titles.yTitle, "transform='rotate(-90)'");
-  const double dx = std::max(tickStep(axes.x1 - axes.x0), axes.counts ? 1.0 : 0.0);
-  for (double x = std::ceil(axes.x0 / dx - 1e-9) * dx; x <= axes.x1 + 1e-9 * dx; x += dx) {
+  for (const double x : roundTicks(axes.x0, axes.x1, axes.counts ? 1 : 0)) {
     svg += "<path class='grid' d='M" + number(axes.px(x)) + " " + number(kTop) + "V" +
            number(kHeight - kBottom) + "'/>";
     svg += text(axes.px(x), kHeight - kBottom + 15, "middle", tickText(x, axes.x1 - axes.x0));
@@ -284,7 +270,7 @@ struct Legend {
 };
 
 Legend legendOf(const std::vector<Series>& series) {
-  constexpr double kLetter = 6.2, kLine = 18, kGap = 24;  // pixels, of the page's letters
+  constexpr double kLetter = 8.4, kLine = 18, kGap = 24;  // pixels, of the page's letters
   Legend legend;
   if (series.size() < 2) return legend;
   legend.rows = 1;

@@ -292,6 +292,19 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
   drawSegments(picture, segments, colour, 1.15 * strokeWidth(size));
 }
 
+std::vector<double> roundTicks(double low, double high, double least) {
+  const double raw = (high - low) / 5;
+  const double power = std::pow(10, std::floor(std::log10(raw)));
+  const double lead = raw / power;
+  const double step =
+      std::max(power * (lead < 1.5 ? 1 : (lead < 3.5 ? 2 : (lead < 7.5 ? 5 : 10))), least);
+  std::vector<double> ticks;
+  for (double x = std::ceil(low / step - 1e-9) * step; x <= high + 1e-9 * step; x += step) {
+    ticks.push_back(x);
+  }
+  return ticks;
+}
+
 std::string tickText(double value, double range) {
   if (std::abs(value) < 1e-9 * std::abs(range)) value = 0;
   const double magnitude = std::max(std::abs(value), std::abs(range));
@@ -343,7 +356,6 @@ std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
 
 void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width,
                    int height) {
-  constexpr int kTicks = 5;
   const Colour black = {0.02f, 0.02f, 0.02f};
   const double size = std::clamp(height / 24.0, 8.0, 14.0);
   const std::string title =
@@ -360,12 +372,11 @@ void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int
       for (int c = 0; c < 3; ++c) pixel[c] = encodeSrgb(colour[c]);
     }
   }
-  for (int t = 0; t < kTicks; ++t) {
-    const double share = static_cast<double>(t) / (kTicks - 1);
-    const double at = top + (1 - share) * barHeight;
+  const double range = scale.high - scale.low;
+  for (const double value : roundTicks(scale.low, scale.high)) {
+    const double at = top + (scale.high - value) / range * barHeight;
     drawSegments(picture, {{{x + barWidth, at}, {x + barWidth + 0.4 * size, at}}}, black, 1);
-    drawText(picture,
-             tickText(scale.low + share * (scale.high - scale.low), scale.high - scale.low),
+    drawText(picture, tickText(value, range),
              Eigen::Vector2d(x + barWidth + 0.8 * size, at + 0.5 * size), size, black);
   }
 }

@@ -28,6 +28,18 @@ void drawScaleBar(Picture& picture, double pixelsPerMillimetre, int width, int h
            (from + to) / 2 - Eigen::Vector2d(0, 0.6 * letters), letters, kInk, TextAnchor::Middle);
 }
 
+/// The body's directions about a point, each with its letter at the end of a line.
+void drawCompass(Picture& picture, const FlatMarks& marks, const Eigen::Vector2d& middle,
+                 double letters) {
+  for (const auto& [direction, letter] : marks.directions) {
+    const Eigen::Vector2d way(direction.x(), -direction.y());  // y downwards
+    drawSegments(picture, {{middle, middle + 2 * letters * way}}, kInk, letters / 8);
+    drawTextWithRim(picture, letter,
+                    middle + 2.9 * letters * way + Eigen::Vector2d(0, 0.5 * letters), letters, kInk,
+                    kPaper, TextAnchor::Middle);
+  }
+}
+
 /// A piece of an outline in pixels, y downwards.
 struct Stroke {
   Segment2 line;
@@ -62,11 +74,27 @@ struct Box {
   }
 };
 
-/// Names, each at its place or as near above or below as keeps it off those already written.
+/// The right corner of a picture, below or above, where more is paper.
+Box freerCorner(const Picture& picture, int size) {
+  const auto paperBelow = [&](int top) {
+    int count = 0;
+    for (int y = top; y < top + size; ++y) {
+      for (int x = picture.width - size; x < picture.width; ++x) {
+        count += picture.pixel(x, y)[0] == 255;
+      }
+    }
+    return count;
+  };
+  const int bottom = picture.height - size;
+  const Eigen::Vector2d low(picture.width - size, paperBelow(0) > paperBelow(bottom) ? 0 : bottom);
+  return {low, low + Eigen::Vector2d::Constant(size)};
+}
+
+/// Names, each at its place or as near above or below as keeps it off those already written; none
+/// where there is no room.
 void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, std::string>>& names,
-               int width, double letters) {
+               std::vector<Box> taken, int width, double letters) {
   constexpr std::array kRowsAside = {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0};
-  std::vector<Box> taken;
   for (const auto& [place, name] : names) {
     const double half = 0.5 * textWidth(name, letters) + 0.3 * letters;
     const double x = std::clamp(place.x(), half, std::max(half, width - half));
@@ -79,7 +107,8 @@ void drawNames(Picture& picture, const std::vector<std::pair<Eigen::Vector2d, st
       const Box box = boxAt(row);
       return std::ranges::none_of(taken, [&](const Box& b) { return b.meets(box); });
     });
-    const Box box = boxAt(free == kRowsAside.end() ? 0.0 : *free);
+    if (free == kRowsAside.end()) continue;  // a name over another can be read no more than none
+    const Box box = boxAt(*free);
     taken.push_back(box);
     drawTextWithRim(picture, name, {x, box.high.y() - 0.35 * letters}, letters, kInk, kPaper,
                     TextAnchor::Middle);
@@ -126,10 +155,18 @@ Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Fla
     strokes.push_back({{pixelOf(line.from), pixelOf(line.to)}, line.left, line.right});
   }
   drawOutlines(picture, strokes, height / 330.0);
+  const double letters = std::clamp(height / 60.0, 9.0, 16.0);
+  std::vector<Box> taken;
+  if (!marks.directions.empty()) {
+    taken.push_back(freerCorner(picture, static_cast<int>(9 * letters)));
+  }
   std::vector<std::pair<Eigen::Vector2d, std::string>> names;
   for (const auto& [place, name] : marks.names) names.emplace_back(pixelOf(place), name);
-  drawNames(picture, names, options.width, std::clamp(height / 56.0, 9.0, 18.0));
+  drawNames(picture, names, taken, options.width, std::clamp(height / 56.0, 9.0, 18.0));
   drawScaleBar(picture, scale, options.width, options.height);
+  if (!taken.empty()) {
+    drawCompass(picture, marks, (taken.front().low + taken.front().high) / 2, letters);
+  }
   return picture;
 }
 

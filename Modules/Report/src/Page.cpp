@@ -196,8 +196,8 @@ std::string picturesAtGlance(const ReportContent& content) {
   for (const ReportGlance& glance : content.glance) html += glanceHtml(glance);
   for (const ReportDrawing& drawing : content.drawings) {
     if (drawing.guide.empty()) continue;
-    html += "<div class='seen'><h3>" + escapeHtml(drawing.title) + "</h3>" + drawingHtml(drawing) +
-            "<p class='quiet'>" + escapeHtml(drawing.guide) + "</p></div>";
+    html += "<div class='seen drawn'><h3>" + escapeHtml(drawing.title) + "</h3>" +
+            drawingHtml(drawing) + "<p class='quiet'>" + escapeHtml(drawing.guide) + "</p></div>";
   }
   return html;
 }
@@ -230,18 +230,28 @@ std::string findingsHtml(const ReportFindings& findings) {
     html += "<td></td></tr></thead>";
   }
   html += "<tbody>";
+  std::string group;
   for (const ReportFindings::Row& row : findings.rows) {
+    if (row.group != group) {
+      group = row.group;
+      html += printed("<tr class='group'><th scope='colgroup' colspan='%zu'>",
+                      findings.columns.size() + (isExpected ? 3 : 2)) +
+              escapeHtml(group) + "</th></tr>";
+    }
     html += "<tr><th scope='row'>" + escapeHtml(row.what);
     if (!row.unit.empty()) html += " <span class='quiet'>" + escapeHtml(row.unit) + "</span>";
     html += "</th>";
-    for (const std::string& value : row.values) html += "<td>" + escapeHtml(value) + "</td>";
+    const std::size_t span = findings.columns.size() / std::max<std::size_t>(1, row.values.size());
+    for (const std::string& value : row.values) {
+      html += printed("<td colspan='%zu'>", span) + escapeHtml(value) + "</td>";
+    }
     if (isExpected) html += "<td class='expected'>" + escapeHtml(row.expected) + "</td>";
     html += "<td class='meaning'>" + escapeHtml(row.meaning) + "</td></tr>";
   }
   return html + "</tbody></table></div></section>\n";
 }
 
-/// Five values along the bar, as text.
+/// Round values along the bar, as text.
 std::string barHtml(const ColourScale& scale) {
   constexpr int kStops = 16;  // of a scale's gradient
   std::string gradient;
@@ -252,10 +262,10 @@ std::string barHtml(const ColourScale& scale) {
                      (scale.unit.empty() ? "" : " [" + escapeHtml(unitText(scale.unit)) + "]") +
                      "</span><div class='scale-bar' style='background:linear-gradient(to right," +
                      gradient + ")'></div><div class='scale-ticks'>";
-  constexpr int kTicks = 4;
-  for (int t = 0; t <= kTicks; ++t) {
-    const double value = scale.low + (scale.high - scale.low) * t / kTicks;
-    html += "<span>" + tickText(value, scale.high - scale.low) + "</span>";
+  const double range = scale.high - scale.low;
+  for (const double value : roundTicks(scale.low, scale.high)) {
+    html += printed("<span style='left:%.1f%%'>", 100 * (value - scale.low) / range) +
+            tickText(value, range) + "</span>";
   }
   return html + "</div></div>";
 }

@@ -15,7 +15,6 @@ namespace {
 constexpr double kLegendShare = 0.13;   // of the width that the colour bar takes
 constexpr double kSurfaceShape = 0.75;  // height over width of a panel
 constexpr double kFlatShare = 0.6;      // of the width that a flat map is high at most
-constexpr int kTicks = 5;
 
 std::string svgText(double x, double y, double size, const std::string& text) {
   return printed("<text x='%.1f' y='%.1f' font-size='%.1f'>", x, y, size) + escapeHtml(text) +
@@ -65,10 +64,10 @@ std::string svgBar(const ColourScale& scale, double x, double top, double height
   svg += "</linearGradient></defs>\n";
   svg += printed("<rect x='%.1f' y='%.1f' width='%.1f' height='%.1f' fill='url(#colours)'/>\n", x,
                  top, 1.2 * letters, height);
-  for (int n = 0; n < kTicks; ++n) {
-    const double t = static_cast<double>(n) / (kTicks - 1);
-    svg += svgText(x + 1.8 * letters, top + (1 - t) * height + 0.5 * letters, 1.4 * letters,
-                   tickText(scale.low + t * (scale.high - scale.low), scale.high - scale.low));
+  const double range = scale.high - scale.low;
+  for (const double value : roundTicks(scale.low, scale.high)) {
+    svg += svgText(x + 1.8 * letters, top + (scale.high - value) / range * height + 0.5 * letters,
+                   1.4 * letters, tickText(value, range));
   }
   const std::string unit = scale.unit.empty() ? "" : " (" + unitText(scale.unit) + ")";
   return svg + svgText(x, top - letters, 1.4 * letters, scale.title + unit);

@@ -209,6 +209,21 @@ TEST(ReportPage, ListsItsPartsAndNoneThatIsNotThere) {
   EXPECT_NE(page.find("<td class='expected'>1 to 5 mm (Fischl 2000)"), std::string::npos);
 }
 
+TEST(ReportPage, NumbersStandUnderTheirStepAndOnceWhereBothSidesShareThem) {
+  ReportContent content;
+  content.findings = {{"left", "right"},
+                      {{"Brain volume", "ml", {"1740"}, "", "", "Segment"},
+                       {"Faces turned over", "", {"0", "1"}, "", "", "Sphere"},
+                       {"Area", "", {"2", "3"}, "", "", "Sphere"}}};
+  const std::string page = reportPage(content);
+  EXPECT_NE(page.find("<td colspan='2'>1740</td>"), std::string::npos);
+  EXPECT_NE(page.find("<td colspan='1'>0</td><td colspan='1'>1</td>"), std::string::npos);
+  const std::size_t heading = page.find(">Sphere</th>");
+  EXPECT_LT(page.find(">1740<"), heading);
+  EXPECT_LT(heading, page.find("Faces turned over"));
+  EXPECT_EQ(page.find(">Sphere</th>", heading + 1), std::string::npos) << "named once";
+}
+
 TEST(ReportPage, NamesNothingToFetch) {
   ReportContent content;
   content.title = "page";

@@ -322,6 +322,53 @@ TEST(FlatFigure, OutlinesLieWhereTheSurfaceDoesNotUpsideDown) {
   EXPECT_EQ(redsIn(picture, 225, 450), 0);
 }
 
+TEST(FlatFigure, DirectionsStandInTheCorner) {
+  const TriangleMesh plane = geometry::makeRectangle(40, 40, 40, 40);
+  SurfacePaint paint;
+  paint.values = Eigen::VectorXd::Zero(plane.vertexCount());
+  paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
+  FlatMarks marks;
+  const Picture plain = flatPanel(plane, paint, marks, 450);
+  marks.directions.emplace_back(Eigen::Vector2d(0, 1), "A");
+  const Picture picture = flatPanel(plane, paint, marks, 450);
+  const auto changed = [&](int fromX, int toX, int fromY, int toY) {
+    int count = 0;
+    for (int y = fromY; y < toY; ++y) {
+      for (int x = fromX; x < toX; ++x) count += picture.pixel(x, y)[0] != plain.pixel(x, y)[0];
+    }
+    return count;
+  };
+  const int right = picture.width;
+  EXPECT_GT(changed(right - 80, right, 380, 412), 20) << "the letter above";
+  EXPECT_EQ(changed(right - 80, right, 415, 450), 0) << "and nothing below its foot";
+  EXPECT_EQ(changed(0, right - 80, 0, 450), 0);
+  marks.names.emplace_back(Point(39, 3, 0), "a name");
+  const Picture named = flatPanel(plane, paint, marks, 450);
+  EXPECT_NE(named.rgb, picture.rgb);
+  for (int y = 380; y < 450; ++y) {
+    for (int x = right - 70; x < right; ++x) {
+      ASSERT_EQ(named.pixel(x, y)[0], picture.pixel(x, y)[0]) << "names keep off the compass";
+    }
+  }
+}
+
+TEST(FlatFigure, ANameWithoutRoomIsLeftOut) {
+  const TriangleMesh plane = geometry::makeRectangle(40, 40, 40, 40);
+  SurfacePaint paint;
+  paint.values = Eigen::VectorXd::Zero(plane.vertexCount());
+  paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
+  FlatMarks marks;
+  for (int n = 0; n < 7; ++n) marks.names.emplace_back(Point(20, 20, 0), "a name");
+  const Picture seven = flatPanel(plane, paint, marks, 450);
+  marks.names.emplace_back(Point(20, 20, 0), "another");
+  EXPECT_EQ(flatPanel(plane, paint, marks, 450).rgb, seven.rgb);
+}
+
+TEST(Ticks, AreRoundAndWithinTheRange) {
+  EXPECT_EQ(roundTicks(1, 4.3), (std::vector<double>{1, 1.5, 2, 2.5, 3, 3.5, 4}));
+  EXPECT_EQ(roundTicks(0, 2, 1), (std::vector<double>{0, 1, 2})) << "counts";
+}
+
 TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {
   EXPECT_EQ(tickText(2.5, 4), "2.5");
   EXPECT_EQ(tickText(0, 4), "0");

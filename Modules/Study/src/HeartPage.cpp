@@ -30,14 +30,12 @@ std::string rounded(const std::string& text) {
   return printed("%.1f", number);
 }
 
-// In addition to the style that all pages share.
 constexpr char kStyle[] =
-    "body{font:16px/1.5 sans-serif;color:#1a1d21;max-width:1180px;margin:2em auto;padding:0 "
-    "1em}.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid "
-    "#d5d9dd;padding:4px "
-    "10px;text-align:left;vertical-align:top}td.n{text-align:right}th{background:#f1f3f5}tr.bad{"
-    "background:#fbf0ee}td.wide{padding:8px 10px "
-    "20px}img{height:360px;max-width:100%;object-fit:contain}a{color:#145ab4}";
+    R"(:root{color-scheme:light dark;--ink:#1a1d21;--paper:#fff;--line:#d5d9dd;--soft:#f1f3f5;--bad:#fbf0ee;--link:#145ab4}
+@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--paper:#16191d;--line:#3a424b;--soft:#20252b;--bad:#3a2321;--link:#7ab8ee}}
+body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:1180px;margin:2em auto;padding:0 1em}
+.scroll{overflow-x:auto}table{border-collapse:collapse}td,th{border:1px solid var(--line);padding:4px 10px;text-align:left;vertical-align:top}
+td.n{text-align:right}th{background:var(--soft)}tr.bad{background:var(--bad)}td.wide{padding:8px 10px 20px}img{height:460px;background:#fff}a{color:var(--link)})";
 
 /// A line of numbers, and below it the pictures or what went wrong.
 std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
@@ -57,7 +55,7 @@ std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) 
   if (row.pictured) {
     const std::string folder = escapeHtml(row.folder.generic_string());
     text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
-            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.png\"></a>";
+            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.svg\"></a>";
   }
   return text + "</td></tr>\n";
 }
@@ -71,19 +69,20 @@ std::string heartPage(const std::vector<HeartRow>& rows, const std::string& titl
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
-      escapeHtml(title) + "</title><style>" + kStyle + "</style></head><body>\n<h1>" +
+      escapeHtml(title) + "</title><style>" + kStyle + "</style></head><body><main>\n<h1>" +
       escapeHtml(title) + "</h1>\n<p>" + std::to_string(done) + " of " +
       std::to_string(rows.size()) +
       " hearts are done. All numbers, segments too, are in <a href=\"hearts.tsv\">hearts.tsv</a>; "
       "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
-      "<div class=\"scroll\"><table><tr><th>heart</th><th>state</th>";
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
+      "aria-label=\"hearts\"><table><tr><th>heart</th><th>state</th>";
   for (const std::string& name : about) text += "<th>" + escapeHtml(name) + "</th>";
   for (const HeartColumn& column : kShown) {
     text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
   }
   text += "</tr>\n";
   for (const HeartRow& row : rows) text += pageRow(row, about);
-  return text + "</table></div>\n</body></html>\n";
+  return text + "</table></div>\n</main></body></html>\n";
 }
 
 }  // namespace explica::study

@@ -106,6 +106,9 @@ TEST(HeartStudy, TableHoldsOneRowAPersonWhateverBecameOfIt) {
   EXPECT_NE(page.find("<td class=\"n\">120.5</td>"), std::string::npos);
   EXPECT_NE(page.find("1 of 3 hearts"), std::string::npos);
   EXPECT_EQ(page.find("http"), std::string::npos);
+  EXPECT_NE(page.find("prefers-color-scheme:dark"), std::string::npos);
+  EXPECT_NE(page.find("<main>"), std::string::npos) << "a landmark for screen readers";
+  EXPECT_EQ(page.find("bullseye.png"), std::string::npos) << "letters of pixels";
 }
 
 TEST(HeartStudy, ParticipantsNeedTheirIdentifier) {

@@ -81,7 +81,16 @@ TEST(StudyPage, NamesColumnsInWordsWithUnits) {
   for (const auto& column : dataOf(indexPage(manyRows(3), "Words"))["columns"]) {
     EXPECT_EQ(column["words"].get<std::string>().find('_'), std::string::npos) << column;
   }
-  const auto columns = dataOf(indexPage(manyRows(3), "Words"))["columns"];
+  std::vector<StudyRow> rows = manyRows(3);
+  for (const char* key :
+       {"surface.volume_white", "surface.faces", "thickness.traced_fraction", "unfold.iterations",
+        "unfold.stop_reason", "register.folding_correlation_after"}) {
+    rows[0].values[key] = "1";
+  }
+  const auto columns = dataOf(indexPage(rows, "Words"))["columns"];
+  for (const auto& column : columns) {
+    EXPECT_EQ(column["words"].get<std::string>().find(':'), std::string::npos) << column;
+  }
   const auto area = std::find_if(columns.begin(), columns.end(),
                                  [](const auto& c) { return c["words"] == "White area"; });
   ASSERT_NE(area, columns.end());

@@ -159,7 +159,9 @@ void describeThickness(Results& t, const SurfaceSummary& s, const CorticalSurfac
   t.number("thickness_mean_trajectory", "Mean length of trajectories", "mm", "",
            where(known, means.trajectory));
   t.number("thickness_mean_nearest", "Mean of the nearest distances", "mm",
-           "Both ways, as FreeSurfer.", where(known, means.nearest));
+           "Both ways, as FreeSurfer.", where(known, means.nearest))
+      .usual(2.3, 3.1, "95 % of 1,035 people of 6 to 64 years, ABIDE I by FreeSurfer")
+      .inHead();
   t.count("vertices_without_grey", "Vertices without grey matter", "All surfaces coincide there.",
           where(known, made.noRibbon));
 }

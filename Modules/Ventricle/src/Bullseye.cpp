@@ -17,9 +17,9 @@ namespace {
 using report::Colour;
 using report::TextAnchor;
 
-constexpr double kPanel = 500, kHeight = 600;                                   // of one bull's-eye
-constexpr double kRadius = 150, kMiddleX = 212, kMiddleY = 270;                 // pixels
-constexpr double kBarX = 425, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
+constexpr double kPanel = 440, kHeight = 590;                                   // of one bull's-eye
+constexpr double kRadius = 150, kMiddleX = 190, kMiddleY = 270;                 // pixels
+constexpr double kBarX = 385, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
 /// What a bull's-eye shows.
 struct Panel {
@@ -73,15 +73,14 @@ void drawSegment(Canvas& canvas, const Point2& corner, const Panel& panel, const
                                                     : place(0.5 * (sector.inner + sector.outer),
                                                             sector.first + 0.5 * sector.width));
   const Colour ink = inkOn(ground);
-  canvas.text(middle + Point2(0, 1), known ? printed("%.*f", panel.digits, value) : "n/a", 9.5,
-              ink);
-  canvas.text(middle + Point2(0, 13), std::to_string(row.number), 6.5, ink);
+  canvas.text(middle + Point2(0, 1), known ? printed("%.*f", panel.digits, value) : "n/a", 11, ink);
+  canvas.text(middle + Point2(0, 14), std::to_string(row.number), 7.5, ink);
 }
 
 void drawNames(Canvas& canvas, const Point2& corner, bool oriented) {
   if (!oriented) {
     canvas.text(corner + Point2(kMiddleX, kMiddleY - kRadius - 16),
-                "not oriented: no right ventricle was given", 8, kInk);
+                "not oriented: no right ventricle was given", 9, kInk);
     return;
   }
   const std::array<const char*, 6> names = {"anterior", "antero-", "infero-",
@@ -95,8 +94,8 @@ void drawNames(Canvas& canvas, const Point2& corner, bool oriented) {
                               : side > 0.1 ? TextAnchor::Left
                                            : TextAnchor::Middle;
     if (n == 3) at[1] += 10;
-    canvas.text(at, names[n], 8, kInk, anchor);
-    if (*second[n] != '\0') canvas.text(at + Point2(0, 13), second[n], 8, kInk, anchor);
+    canvas.text(at, names[n], 9, kInk, anchor);
+    if (*second[n] != '\0') canvas.text(at + Point2(0, 13), second[n], 9, kInk, anchor);
   }
 }
 
@@ -111,13 +110,13 @@ void drawBar(Canvas& canvas, const Point2& corner, const Panel& panel) {
     canvas.rectangle(corner + Point2(kBarX, kBarTop + kBarHeight * (kSteps - 1 - q) / kSteps),
                      {kBarWidth, kBarHeight / kSteps + 0.6}, panel.scale(value));
   }
-  for (int t = 0; t <= 4; ++t) {
-    const double value = low + (high - low) * t / 4, y = heightOf(value);
+  for (const double value : report::roundTicks(low, high)) {
+    const double y = heightOf(value);
     canvas.stroke(
         {corner + Point2(kBarX + kBarWidth, y), corner + Point2(kBarX + kBarWidth + 4, y)}, kInk,
         1);
     canvas.text(corner + Point2(kBarX + kBarWidth + 8, y + 3.5),
-                report::tickText(value, high - low), 7.5, kInk, TextAnchor::Left);
+                report::tickText(value, high - low), 8.5, kInk, TextAnchor::Left);
   }
   canvas.text(corner + Point2(kBarX + kBarWidth / 2, kBarTop - 12), panel.unit, 8, kInk);
   if (!(panel.normalLow < high && panel.normalHigh > low)) return;
@@ -135,15 +134,15 @@ void drawPanel(Canvas& canvas, const Point2& corner, const Panel& panel, bool or
   canvas.text(corner + Point2(0.5 * kPanel, 34), panel.title, 12, kInk);
   canvas.text(
       corner + Point2(0.5 * kPanel, 56),
-      "frame " + std::to_string(panel.frame->number) + ", mean of each segment, " + panel.unit, 8,
+      "frame " + std::to_string(panel.frame->number) + ", mean of each segment, " + panel.unit, 9,
       kGrey);
   for (const Segment& row : panel.frame->segments->rows) drawSegment(canvas, corner, panel, row);
   drawNames(canvas, corner, oriented);
   drawBar(canvas, corner, panel);
   double y = kMiddleY + kRadius + 50;
   for (const std::string& note : panel.notes) {
-    canvas.text(corner + Point2(24, y), note, 7.5, kGrey, TextAnchor::Left);
-    y += 15;
+    canvas.text(corner + Point2(24, y), note, 8.5, kGrey, TextAnchor::Left);
+    y += 17;
   }
 }
 
@@ -184,7 +183,7 @@ std::vector<std::string> thicknessNotes(const Beat& beat) {
   const Reference& healthy = referenceOf(Quantity::MiddleThickness);
   return {leftOutNote(beat.atDiastole()),
           "rings from outside: basal, middle, apical, and the apex",
-          "* healthy adults, mean of the middle ring, 2 SD to either side (here " +
+          "* healthy adults, middle ring, 2 SD to either side (here " +
               here(beat, Quantity::MiddleThickness) + " mm):",
           rangeText(healthy),
           healthy.people,

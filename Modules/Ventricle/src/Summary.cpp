@@ -3,6 +3,8 @@
 
 #include "Explica/Ventricle/Summary.h"
 
+#include "Explica/Ventricle/Reference.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,30 +22,35 @@ std::int64_t countOf(const Frame& frame, LeftOut why) {
   return std::count(reasons.begin(), reasons.end(), static_cast<std::uint8_t>(why));
 }
 
+/// What healthy women and men have, two standard deviations to either side.
+void besideHealthy(Result& result, Quantity quantity) {
+  const Reference& healthy = referenceOf(quantity);
+  result.inHead().usual(std::min(healthy.women.low(), healthy.men.low()),
+                        std::max(healthy.women.high(), healthy.men.high()),
+                        "healthy " + rangeText(healthy) + ", " + healthy.source);
+}
+
 void describeVolumes(Results& t, const Frame& ed, const Frame& es, double ejection, bool beats) {
   const auto later = [&](double value) { return beats ? known(value) : std::nullopt; };
-  t.number(
-       "cavity_volume_ed_ml", "Cavity at end-diastole", "ml",
-       "Voxels of the left ventricle's cavity in the frame where they are most; healthy women 135 "
-       "\u00b1 26, men 160 \u00b1 29 (Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775).",
-       known(ed.cavity))
-      .inHead();
-  t.number("cavity_volume_es_ml", "Cavity at end-systole", "ml",
-           "Healthy women 42 \u00b1 12, men 50 \u00b1 16 (the same).", later(es.cavity))
-      .inHead();
+  besideHealthy(t.number("cavity_volume_ed_ml", "Cavity at end-diastole", "ml",
+                         "Voxels of the left ventricle's cavity in the frame where they are most.",
+                         known(ed.cavity)),
+                Quantity::DiastolicVolume);
+  besideHealthy(
+      t.number("cavity_volume_es_ml", "Cavity at end-systole", "ml", "", later(es.cavity)),
+      Quantity::SystolicVolume);
   t.number("stroke_volume_ml", "Stroke volume", "ml", "", later(ed.cavity - es.cavity));
-  t.number("ejection_fraction_percent", "Ejection fraction", "%",
-           "Share of the end-diastolic volume that leaves the cavity; healthy women 61 \u00b1 5, "
-           "men 58 \u00b1 5 (Petersen et al. 2017, J Cardiovasc Magn Reson 19:18).",
-           later(ejection))
-      .inHead();
+  besideHealthy(
+      t.number("ejection_fraction_percent", "Ejection fraction", "%",
+               "Share of the end-diastolic volume that leaves the cavity.", later(ejection)),
+      Quantity::Ejection);
   t.number("wall_volume_ed_ml", "Volume of the wall", "ml", "At end-diastole.", known(ed.wall));
-  t.number("mass_ed_g", "Mass of the wall", "g",
-           "Volume of the wall at end-diastole times 1.05 g/ml; papillary muscles belong to "
-           "whatever label they have; healthy women 98 \u00b1 21, men 134 \u00b1 21 where they are "
-           "part of the wall (Kawel-Boehm et al. 2015, J Cardiovasc Magn Reson 17:29).",
-           known(ed.mass))
-      .inHead();
+  besideHealthy(
+      t.number("mass_ed_g", "Mass of the wall", "g",
+               "Volume of the wall at end-diastole times 1.05 g/ml; papillary muscles belong to "
+               "whatever label they have, in healthy people here to the wall.",
+               known(ed.mass)),
+      Quantity::Mass);
 }
 
 void describeThickness(Results& t, const Frame& ed, const Frame& es, bool beats) {

@@ -5,6 +5,7 @@
 
 #include "Explica/Collision/Untangling.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Unfolding/Account.h"
 #include "Explica/Unfolding/Continuation.h"
@@ -269,6 +270,18 @@ void Session::reset() {
     if (self_->activity == Activity::Running) self_->activity = Activity::Paused;
   }
   choose(self_->choice);
+}
+
+std::string Session::regionWords() const {
+  const Preview& preview = self_->preview;
+  std::string words;
+  if (!preview.region.faces.empty()) {
+    words = std::to_string(preview.region.faces.size()) + " faces";
+    if (std::isfinite(preview.visibility)) {
+      words += printed(", average visibility %.3f", preview.visibility);
+    }
+  }
+  return words + (words.empty() || problem().empty() ? "" : "\n") + problem();
 }
 
 std::string Session::problem() const {

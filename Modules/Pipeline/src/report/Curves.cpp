@@ -41,7 +41,7 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
                            {title, "iteration", unit, logarithmic, endOf(step, *iteration)}),
          titleOf(step.name), detail});
   };
-  chart("Visibility", "average flux", {"visibility", "seen"}, false, false);
+  chart("Visibility", "mean over the region", {"visibility", "seen"}, false, false);
   chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true, false);
   for (const std::string& name : table.names) {
     if (!name.starts_with("energy")) continue;
@@ -71,7 +71,8 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
   };
   const auto maps = io::readVertexMaps(step.folder / file);
   for (const io::VertexMap& map : maps) {
-    report::ChartText words{inWords(map.name), "", "share of vertices"};
+    const std::string name = mapWords(map.name);
+    report::ChartText words{inWords(name), "", "share of vertices"};
     // What was before lies behind what is after.
     const std::size_t after = map.name.find("after");
     for (const io::VertexMap& other : maps) {
@@ -83,7 +84,7 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
       words.behindName = "before";
     }
     const std::string axis =
-        map.unit.empty() ? map.name : map.name + " [" + report::unitText(map.unit) + "]";
+        map.unit.empty() ? name : name + " [" + report::unitText(map.unit) + "]";
     words.xTitle = axis;
     results.content().charts.push_back({first ? id : "", report::histogramSvg(inside(map), words),
                                         titleOf(step.name),
@@ -93,6 +94,14 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
 }
 
 }  // namespace
+
+std::string mapWords(const std::string& name) {
+  for (const auto& [start, words] : {std::pair{"flux ", "facing the viewpoint (1 = directly), "},
+                                     std::pair{"seen ", "share seen from the viewpoint, "}}) {
+    if (name.starts_with(start)) return words + name.substr(5);
+  }
+  return name;
+}
 
 void chartThickness(ResultFolder& results, const StepFolder& step) {
   const Volume<float> thickness = io::readScalars(step.folder / "thickness.nii.gz",

@@ -15,15 +15,17 @@ std::string textOf(const Json& value, const std::string& unit) {
 
 /// "1 to 5 mm (Fischl 2000)", of "Mean thickness: 2.6 mm; expected 1 to 5 mm (Fischl 2000)".
 std::string expectedIn(const std::string& sentence) {
-  const std::string before = "; expected ";
-  const std::size_t at = sentence.rfind(before);
-  return at == std::string::npos ? "" : sentence.substr(at + before.size());
+  const std::size_t at = sentence.rfind("; expected ");
+  if (at != std::string::npos) return sentence.substr(at + 11);
+  const std::size_t usual = sentence.rfind("; usual ");
+  return usual == std::string::npos ? "" : sentence.substr(usual + 8);
 }
 
 /// What the record says of the numbers that belong at the head of a page.
 void listDescribed(const ResultFolder& results, const std::vector<std::string>& sides,
                    report::ReportFindings& findings) {
   std::map<std::pair<std::string, std::string>, std::size_t> rows;  // by command and key
+  const bool isMany = results.steps().size() > 1;
   for (const StepFolder& step : results.steps()) {
     // The thickness is stated once: that of the surfaces where there are any.
     if (step.command == "thickness" && !results.stepsOf("surface").empty()) continue;
@@ -34,17 +36,18 @@ void listDescribed(const ResultFolder& results, const std::vector<std::string>& 
       const auto [row, isNew] = rows.try_emplace({step.command, key}, findings.rows.size());
       if (isNew) {
         findings.rows.push_back({meaning.value("title", key), shown(0, unit).unit,
-                                 std::vector<std::string>(sides.size()),
+                                 std::vector<std::string>(step.side().empty() ? 1 : sides.size()),
                                  meaning.value("meaning", ""),
-                                 expectedIn(meaning.value("sentence", ""))});
+                                 expectedIn(meaning.value("sentence", "")),
+                                 isMany ? inWords(step.command) : ""});
       }
       std::string text = textOf(step.summary[key], unit);
       if (step.summary.contains(start)) {
         text = textOf(step.summary[start], unit) + " \u2192 " + text;
       }
-      for (std::size_t n = 0; n < sides.size(); ++n) {
-        const bool here = sides[n].empty() || step.side().empty() || step.side() == sides[n];
-        if (here) findings.rows[row->second].values[n] = text;
+      std::vector<std::string>& values = findings.rows[row->second].values;
+      for (std::size_t n = 0; n < values.size(); ++n) {
+        if (values.size() == 1 || step.side() == sides[n]) values[n] = text;
       }
     }
   }

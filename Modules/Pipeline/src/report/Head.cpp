@@ -79,11 +79,6 @@ void glanceAt(report::ReportContent& content, const char* id, const std::string&
 void showHead(ResultFolder& results) {
   report::ReportContent& content = results.content();
   listFacts(results, content);
-  glanceAt(content, kThicknessPlace, "Thickness",
-           "Right: 2 to 3 mm, crowns of gyri thicker than the floors of sulci, primary sensory and "
-           "visual cortex thinnest. Wrong: stripes or spots thinner than 1 mm or thicker than 5 "
-           "mm. Then: look at the slices there.",
-           {"lateral", "left, lateral", "right, lateral"});
   glanceAt(content, kPatchViewsPlace, "Patch before and after",
            "Right: the sulci's floors face the reader, the rim joins the surroundings. Wrong: "
            "sulci still folded, a torn or twisted rim. Then: more iterations or a smaller patch.",

@@ -34,7 +34,10 @@ constexpr Known kKnown[] = {
      "from its neighbours; look at its slices."},
     {"slices_ed", "Slices at end-diastole", ""},
     {"slices_es", "Slices at end-systole", ""},
-    {"slices", "Slices over time", ""},
+    {"slices", "Slices over time",
+     "Right: red on the cavity's border, blue on the wall's outer one, in every frame. Wrong: a "
+     "line through the cavity, fat or the right ventricle. Then: correct the labels there and "
+     "run again."},
     {"field", "Interpolant, tangent field, trajectories and grid in a slice", ""}};
 
 report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {
@@ -44,7 +47,7 @@ report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {
   const bool isKnown = known != std::end(kKnown);
   return {"",
           isKnown ? known->title : inWords(stem),
-          step.name + "/" + file.filename().string(),
+          "File: " + step.name + "/" + file.filename().string(),
           mediaTypeOf(file),
           fileText(file),
           isKnown ? known->guide : ""};

@@ -69,6 +69,9 @@ struct ShownFrames {
 /// Layers of the tissue in slices, and the thickness layer by layer.
 void showLayers(ResultFolder& results, const StepFolder& step, const FolderReportOptions& options);
 
+/// What a page calls a map of an unfolding: "flux after" is how directly it faces the viewpoint.
+[[nodiscard]] std::string mapWords(const std::string& name);
+
 /// Histogram of the thickness in voxels: a thick column counts more often than on a surface.
 void chartThickness(ResultFolder& results, const StepFolder& step);
 

@@ -119,6 +119,38 @@ std::optional<std::pair<std::vector<Eigen::VectorXd>, report::ColourScale>> addM
   return std::pair{std::move(values), scale};
 }
 
+/// Thickness where no sulcus hides it, beside the verdict: the inflated hemispheres.
+void glanceAtThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all,
+                       const std::vector<Eigen::VectorXd>& values,
+                       const report::ColourScale& scale) {
+  const report::SurfacePictureOptions size = viewSize();
+  std::vector<TriangleMesh> meshes;
+  std::vector<report::Camera> cameras;
+  double half = 0;
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    const auto& shapes = results.content().evolutions[h].shapes;
+    const auto shape = std::ranges::find(shapes, "inflated", &report::EvolutionShape::name);
+    meshes.push_back({shape->positions, all[h]->white.faces});
+    cameras.push_back(report::cameraFor(meshes.back(), standardViews(all[h]->side).front().second,
+                                        size.width, size.height));
+    half = std::max(half, cameras.back().halfHeight);
+  }
+  report::ReportGlance glance{
+      kThicknessPlace, "Thickness, inflated",
+      "Right: 2 to 3 mm, crowns of gyri thicker than the floors of sulci, primary sensory and "
+      "visual cortex thinnest. Wrong: stripes or spots thinner than 1 mm or thicker than 5 mm. "
+      "Then: look at the slices there."};
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    cameras[h].halfHeight = half;
+    glance.views.emplace_back(
+        (all[h]->side.empty() ? "" : all[h]->side + ", ") + "lateral",
+        report::SurfaceScene(meshes[h]).render(cameras[h], report::coloursOf(values[h], scale),
+                                               report::Filling::Smooth, size));
+  }
+  glance.scale = scale;
+  results.content().glance.push_back(std::move(glance));
+}
+
 void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
   const auto map = addMap(results, all, "thickness.shape.gii", "thickness");
   if (!map) return;
@@ -136,6 +168,7 @@ void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& 
            all[h]->scene->render(camera, colours, report::Filling::Smooth, size)});
     }
   }
+  glanceAtThickness(results, all, map->first, map->second);
   views.id = kThicknessPlace;
   views.title = "Thickness on the pial surface";
   views.caption = "Grey: not measured, as on the medial wall.";

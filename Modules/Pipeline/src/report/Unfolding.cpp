@@ -123,7 +123,8 @@ void addOwnMaps(const StepFolder& step, const Unfolded& unfolded, report::Evolut
       for (Eigen::Index v = 0; v < map.values.size(); ++v) {
         if (!inRegion[v]) map.values[v] = kNaN;
       }
-      evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
+      evolution.maps.push_back(
+          {map.values, report::scaleFor(map.values, mapWords(map.name), map.unit)});
     }
   }
 }

@@ -29,6 +29,11 @@ async function unpackIntegers(packed) {
       details.open = details.querySelector('#cuts') !== null;
     }
   }
+  // A broad drawing beside the verdict, as three bull's-eyes in a row, takes the whole width.
+  for (const image of document.querySelectorAll('.drawn img')) {
+    const judge = () => image.closest('.drawn').classList.toggle('broad', image.naturalWidth > 1.5 * image.naturalHeight);
+    if (image.complete) judge(); else image.addEventListener('load', judge);
+  }
   // A link into what is folded unfolds it.
   const unfold = () => {
     const place = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -415,11 +420,11 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
     }
     return 1.05 * Math.max(high, wide * canvas.clientHeight / canvas.clientWidth);
   }
-  function lookAt(box, half, direction) {
+  function lookAt(box, direction) {
     eye.target.set(...box.middle);
     const up = Math.abs(direction.clone().normalize().z) > 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, 1);
     eye.turn.setFromRotationMatrix(new THREE.Matrix4().lookAt(direction, new THREE.Vector3(), up));
-    eye.half = half || halfFor(box);
+    eye.half = halfFor(box);
     draw();
   }
   const directions = { above: [0, 0, 1], left: [-1, 0, 0], right: [1, 0, 0], front: [0, 1, 0], back: [0, -1, 0], below: [0, 0, -1] };
@@ -428,7 +433,7 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
     const box = boxNow();
     const direction = viewpoint ? new THREE.Vector3(...viewpoint).sub(new THREE.Vector3(...box.middle))
       : new THREE.Vector3(...directions[hasShapes ? byId('from').value : 'left']);
-    lookAt(box, 0, direction);
+    lookAt(box, direction);
   }
   let patchAt = -1;
   // The patch from its viewpoint, as large as its box in the first and the last frame; of several the next.
@@ -440,9 +445,9 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
     const here = frame;
     const boxes = [0, last].map((f) => { show(f); return boxOf(part.at, filter); });
     show(here);
-    const box = { middle: boxes[0].middle.map((x, c) => 0.5 * (x + boxes[1].middle[c])), size: Math.max(boxes[0].size, boxes[1].size) };
+    const box = joined(boxes);
     const direction = part.viewpoint ? new THREE.Vector3(...part.viewpoint).sub(new THREE.Vector3(...box.middle)) : new THREE.Vector3(-1, 0, 0);
-    lookAt(box, 0.4 * box.size * Math.max(1, canvas.clientHeight / canvas.clientWidth), direction);
+    lookAt(box, direction);
   }
   let pending = false;
   function draw() {

@@ -125,15 +125,7 @@ void MainWindow::showChoice() {
 }
 
 void MainWindow::showRegion() {
-  const Preview& preview = session_.preview();
-  QString says = QString("%1 faces").arg(preview.region.faces.size());
-  if (std::isfinite(preview.visibility)) {
-    says += QString(", average visibility %1").arg(preview.visibility, 0, 'f', 3);
-  }
-  if (const std::string problem = session_.problem(); !problem.empty()) {
-    says += "\n" + QString::fromStdString(problem);
-  }
-  panels_.regionSays->setText(says);
+  panels_.regionSays->setText(QString::fromStdString(session_.regionWords()));
 }
 
 void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t count) {

@@ -31,7 +31,7 @@ constexpr auto enumWords(Judgement) {
 struct Limit {
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
-  Judgement outside = Judgement::Look;  ///< of a value outside
+  Judgement outside = Judgement::Look;  ///< of a value outside; Good: the range does not judge
   std::string source;                   ///< a paper, or the reason in a few words
 };
 
@@ -57,11 +57,13 @@ struct Result {
   Result& atMost(double most, Judgement outside, std::string source);
   Result& atLeast(double least, Judgement outside, std::string source);
   Result& exactly(double value, Judgement otherwise, std::string source);
+  /// A range that most people have and that judges nobody; after the limits that judge.
+  Result& usual(double least, double most, std::string source);
   Result& after(std::string startKey);
   Result& inHead();
   Result& compared();
 
-  /// The worst that any limit says of the value; nothing without limits, or where it is not known.
+  /// The worst that any limit says of the value; nothing where none judges or it is not known.
   [[nodiscard]] std::optional<Judgement> judgement() const;
   /// "expected 1 to 5 mm (Fischl 2000)"
   [[nodiscard]] std::string expectation(const Limit& limit) const;

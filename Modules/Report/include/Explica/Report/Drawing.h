@@ -44,9 +44,13 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
 [[nodiscard]] std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
                                    const Eigen::Vector2d& size);
 
-/// Draws a scale's colours as a standing bar with five ticks, title and unit, in the given
+/// Draws a scale's colours as a standing bar with round ticks, title and unit, in the given
 /// rectangle.
 void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width, int height);
+
+/// Where ticks of an axis stand: multiples of 1, 2 or 5 times a power of ten, about five of them.
+/// @param least  the step at least; 1 for counts
+[[nodiscard]] std::vector<double> roundTicks(double low, double high, double least = 0);
 
 /// A number with as many digits as a reader needs on a range: "2.5", "-0.25", "1e-05".
 [[nodiscard]] std::string tickText(double value, double range);

@@ -23,11 +23,13 @@ struct FlatLine {
 struct FlatMarks {
   std::vector<FlatLine> lines;                       ///< outlines of regions
   std::vector<std::pair<Point, std::string>> names;  ///< what they are called, the largest first
+  std::vector<std::pair<Eigen::Vector2d, std::string>> directions;  ///< unit vector in the map: "A"
 };
 
-/// A flat map seen from above with its colours, outlines, names, a scale bar of a round length and
-/// a colour bar.  Each region has a line of its own along its outline's inside, in its colour, with
-/// a dark one between; names have a white rim and keep off each other where there is room.
+/// A flat map seen from above with its colours, outlines, names, a scale bar of a round length,
+/// a compass of the directions and a colour bar.  Each region has a line of its own along its
+/// outline's inside, in its colour, with a dark one between; names have a white rim and keep off
+/// each other: of those without room the smaller regions' are left out.
 /// @param mesh  z = 0, counter-clockwise from above
 [[nodiscard]] Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
                                  const FlatMarks& marks, int height = 900);

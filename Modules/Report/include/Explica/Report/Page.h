@@ -62,9 +62,10 @@ struct ReportFindings {
   struct Row {
     std::string what;                 ///< "Mean thickness", without unit
     std::string unit;                 ///< "mm"; may be empty
-    std::vector<std::string> values;  ///< one a column, as they are to be read
+    std::vector<std::string> values;  ///< one a column, or one for all, as they are to be read
     std::string meaning = {};         ///< one sentence of definition; may be empty
     std::string expected = {};        ///< "1 to 5 mm (Fischl 2000)"; may be empty
+    std::string group = {};           ///< heading over this and the rows after it; may be empty
   };
   std::vector<std::string> columns;
   std::vector<Row> rows;

@@ -88,6 +88,9 @@ class Session {
   /// @return what the choice selects; also available as preview()
   const Preview& choose(const Choice& choice);
   [[nodiscard]] const Preview& preview() const;
+  /// "812 faces, average visibility 0.412", of an empty region nothing, and the problem.
+  [[nodiscard]] std::string regionWords() const;
+
   /// Why it cannot be unfolded: the preview's problem, or what was found when it began; else empty.
   [[nodiscard]] std::string problem() const;
 
