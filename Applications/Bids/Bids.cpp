@@ -104,7 +104,8 @@ void declare(Declaration& d, BidsSettings& s) {
       .output("descriptions.tsv", FileKind::Table, "what each desc- means")
       .output("README.md", FileKind::Any, "what is where")
       .output(".bidsignore", FileKind::Any, "kinds of files that BIDS does not know yet")
-      .varyingOutput("sub-*.html", FileKind::Report, "leads to the reports on a participant; not with --keep group")
+      .varyingOutput("sub-*.html", FileKind::Report,
+                     "leads to the reports on a participant; not with --keep group")
       .output("sub-*", FileKind::Folder, "results by BIDS names")
       .output("runs", FileKind::Folder, "the runs themselves, with records and reports")
       .varyingOutput("study.tsv", FileKind::Table, "one row a participant and hemisphere")
