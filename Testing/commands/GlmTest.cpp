@@ -260,6 +260,7 @@ TEST(Glm, FindsALesionWhereItIs) {
     outside += p[v] <= 0.05 && unit.row(v).dot(centre) < 0.6;
   EXPECT_EQ(outside, 0);
   EXPECT_GT(readJson(folder / "out/summary.json")["fwhm"], 10);
+  EXPECT_EQ(readJson(folder / "out/provenance.json")["inputs"].size(), 43u) << "each file once";
   EXPECT_NE(readText(folder / "out/report.html").find("thinner: clusters"), std::string::npos);
 }
 

@@ -68,16 +68,19 @@ TEST(PlausibilityCommand, WhiteMatterAndFluidExchangedAreFlagged) {
           .exitCode,
       0);
   const std::string labels = folder / "phantom/labels.nii.gz";  // 1 fluid, 2 grey, 3 white
-  const auto surface = [&](const std::string& white) {
-    return explica({"surface", labels, "--white-label", white, "--grey-label", "2", "--faces",
-                    "1000", "--out", folder / ("white-" + white)});
+  const auto surface = [&](const std::string& white, const std::vector<std::string>& more = {}) {
+    return explica(std::vector<std::string>{"surface", labels, "--white-label", white,
+                                            "--grey-label", "2", "--faces", "1000", "--force",
+                                            "--out", folder / ("white-" + white)} +
+                   more);
   };
   EXPECT_EQ(surface("3").exitCode, 0);
   const CommandResult exchanged = surface("1");
   EXPECT_EQ(exchanged.exitCode, 3) << exchanged;
   const auto summary = readJson(folder / "white-1/summary.json");
   EXPECT_EQ(summary["verdict"], "doubtful");
-  EXPECT_GT(summary["white_changed"].get<double>(), 0.1);
+  EXPECT_EQ(summary["flags"].front()["name"], "exchanged");
+  EXPECT_EQ(surface("1", {"--accept", "exchanged"}).exitCode, 0);
 }
 
 TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {

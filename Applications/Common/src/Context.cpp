@@ -70,11 +70,7 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
   file.digest = provenance::digestOf(path);
   std::error_code ignored;
   file.absolute = fs::absolute(path, ignored).lexically_normal();
-  auto& inputs = state_->record.inputs;
-  const bool known = std::any_of(inputs.begin(), inputs.end(), [&](const auto& other) {
-    return other.absolute == file.absolute && other.role == file.role;
-  });
-  if (known) return path;
+  if (!state_->known.emplace(file.role, file.absolute.string()).second) return path;
   const auto found = provenance::findRecordOf(path, file.digest);
   for (const std::string& sentence :
        state_->meeting->add(file.role, path, file.digest.sha256, found)) {
@@ -89,7 +85,7 @@ fs::path Context::input(const fs::path& path, std::string_view role) {
             path.string() + " was changed since " + found->path.string() + " recorded it");
     }
   }
-  inputs.push_back(std::move(file));
+  state_->record.inputs.push_back(std::move(file));
   return path;
 }
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,9 +36,10 @@ struct Context::State {
   std::vector<std::pair<std::string, std::filesystem::path>> nestedRecords;
   std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
-  std::vector<std::pair<Judgement, std::string>> reasons;  ///< of results that are not good
-  std::vector<std::string> head = {};                      ///< results to end with, in words
-  std::optional<Meeting> meeting = {};                     ///< the files read so far
+  std::vector<std::pair<Judgement, std::string>> reasons;    ///< of results that are not good
+  std::vector<std::string> head = {};                        ///< results to end with, in words
+  std::optional<Meeting> meeting = {};                       ///< the files read so far
+  std::set<std::pair<std::string, std::string>> known = {};  ///< role and path of the same
   Stopwatch seconds = {};
 
   [[nodiscard]] bool doubtful() const {

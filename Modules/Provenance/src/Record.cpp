@@ -4,7 +4,6 @@
 #include "Explica/Provenance/Record.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Software.h"
 
 #include <algorithm>
@@ -33,53 +32,6 @@ std::string nameOfPath(const std::string& word) {
   const std::string name = word.substr(slash + 1);
   const bool rooted = word[0] == '/' || word[0] == '~' || word.starts_with("../");
   return rooted || name.find('.') != std::string::npos ? name : word;
-}
-
-/// The record, if it lists `name` or, without a name, a file of this content.
-std::optional<FoundRecord> listedIn(const std::filesystem::path& candidate,
-                                    const std::optional<std::string>& name, const Digest& digest) {
-  std::error_code fault;
-  if (!std::filesystem::is_regular_file(candidate, fault)) return std::nullopt;
-  try {
-    Json record = readRecord(candidate);
-    for (const Json* outputs : {&record["outputs"], &record["execution"]["varying_outputs"]}) {
-      for (const Json& output : *outputs) {
-        if (!output.contains("sha256")) continue;
-        const bool same = output["sha256"] == digest.sha256;
-        if (name ? output["path"] == *name : same) {
-          return FoundRecord{candidate, std::move(record), same};
-        }
-      }
-    }
-  } catch (const Error&) {
-    // Another program's provenance.json, or a damaged one: not a record of this file.
-  }
-  return std::nullopt;
-}
-
-/// A derivative's sub-01/.../sub-01_hemi-L_white.surf.gii is a copy of what a step of
-/// runs/sub-01_hemi-L* has written, its sub-01_desc-brain_mask.nii.gz of a step of any run of
-/// sub-01.
-std::optional<FoundRecord> recordInRuns(const std::filesystem::path& study, const std::string& name,
-                                        const Digest& digest) {
-  const auto hemi = name.find("_hemi-");
-  std::error_code fault;
-  const std::filesystem::path runs = study / "runs";
-  if (!name.starts_with("sub-") || !isFolder(runs)) return std::nullopt;
-  const auto end = name.find('_', hemi == std::string::npos ? 0 : hemi + 1);
-  const std::string beginning = name.substr(0, end);
-  std::vector<std::filesystem::path> candidates;
-  for (const auto& run : std::filesystem::directory_iterator(runs, fault)) {
-    if (!run.path().filename().string().starts_with(beginning)) continue;
-    for (const auto& step : std::filesystem::directory_iterator(run.path(), fault)) {
-      candidates.push_back(step.path() / kRecordName);
-    }
-  }
-  std::ranges::sort(candidates);
-  for (const auto& candidate : candidates) {
-    if (auto found = listedIn(candidate, std::nullopt, digest)) return found;
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -277,25 +229,6 @@ std::string printable(std::string_view text) {
     at += highControl ? 1 : turning ? 2 : 0;
   }
   return safe;
-}
-
-std::optional<FoundRecord> findRecordOf(const std::filesystem::path& file, const Digest& digest) {
-  constexpr int kFoldersAbove = 3;  // outputs lie in their record's folder or shortly below it
-  std::error_code fault;
-  const auto absolute = std::filesystem::weakly_canonical(file, fault);
-  if (fault) return std::nullopt;
-  auto folder = absolute.parent_path();
-  for (int level = 0; level <= kFoldersAbove && !folder.empty(); ++level) {
-    const auto candidate = folder / kRecordName;
-    if (candidate != absolute) {
-      const auto name = absolute.lexically_relative(folder).generic_string();
-      if (auto found = listedIn(candidate, name, digest)) return found;
-    }
-    if (auto found = recordInRuns(folder, absolute.filename().string(), digest)) return found;
-    if (folder == folder.root_path()) break;
-    folder = folder.parent_path();
-  }
-  return std::nullopt;
 }
 
 }  // namespace explica::provenance

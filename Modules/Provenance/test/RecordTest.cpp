@@ -68,6 +68,41 @@ TEST_F(RecordChain, ObeysItsSchema) {
   EXPECT_FALSE(schemaFaults(damaged, recordSchema()).empty());
 }
 
+TEST_F(RecordChain, ARecordThatChangesIsReadAnew) {
+  const fs::path file = folder_ / "step1/a.txt";
+  const Digest before = digestOf(file);
+  ASSERT_TRUE(findRecordOf(file, before)->sameContent);
+  write("step1/a.txt", "other words");
+  EXPECT_FALSE(findRecordOf(file, digestOf(file))->sameContent);
+  writeRecord("first", "raw.txt", "step1", "a.txt");
+  EXPECT_TRUE(findRecordOf(file, digestOf(file))->sameContent);
+  fs::remove(folder_ / "step1" / kRecordName);
+  EXPECT_FALSE(findRecordOf(file, digestOf(file)));
+}
+
+/// What a study has copied to BIDS names is found among its runs, and among those that come later.
+TEST_F(RecordChain, ACopyIsFoundInItsRun) {
+  const auto runOf = [&](const std::string& label) {
+    const fs::path step = fs::path("study/runs/sub-" + label + "_hemi-L/surface");
+    fs::create_directories(folder_ / step);
+    write(step / "white.surf.gii", "surface of " + label);
+    writeRecord("surface", "raw.txt", step, "white.surf.gii");
+  };
+  const auto copyOf = [&](const std::string& label) {
+    const fs::path anat = "study/sub-" + label + "/anat";
+    fs::create_directories(folder_ / anat);
+    write(anat / ("sub-" + label + "_hemi-L_white.surf.gii"), "surface of " + label);
+    const fs::path copy = folder_ / anat / ("sub-" + label + "_hemi-L_white.surf.gii");
+    return findRecordOf(copy, digestOf(copy));
+  };
+  runOf("1");
+  ASSERT_TRUE(copyOf("1"));
+  EXPECT_NE(copyOf("1")->path.string().find("sub-1_hemi-L/surface"), std::string::npos);
+  EXPECT_FALSE(copyOf("2"));
+  runOf("2");
+  EXPECT_TRUE(copyOf("2"));
+}
+
 TEST_F(RecordChain, UntouchedFilesVerify) {
   const Verification v = verifyRecord(folder_ / "step2" / kRecordName, true);
   EXPECT_TRUE(v.allSame());
