@@ -316,7 +316,7 @@ TEST(Charts, KeepTheLegendOffTheCurvesAndTellThemApart) {
     strokes.insert(svg.substr(at, svg.find(" d=", at) - at));
   }
   EXPECT_EQ(strokes.size(), series.size());
-  EXPECT_NE(svg.find("viewBox='0 0 460 296"), std::string::npos) << "two rows below the plot";
+  EXPECT_NE(svg.find("viewBox='0 0 460 314"), std::string::npos) << "three rows below the plot";
 }
 
 TEST(Charts, DrawOthersBehindAHistogram) {
