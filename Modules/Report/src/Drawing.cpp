@@ -298,6 +298,8 @@ std::vector<double> roundTicks(double low, double high, double least) {
   const double lead = raw / power;
   const double step =
       std::max(power * (lead < 1.5 ? 1 : (lead < 3.5 ? 2 : (lead < 7.5 ? 5 : 10))), least);
+  // No step that values so near to each other could take.
+  if (!(step > 1e-12 * std::max(std::abs(low), std::abs(high)))) return {low, high};
   std::vector<double> ticks;
   for (double x = std::ceil(low / step - 1e-9) * step; x <= high + 1e-9 * step; x += step) {
     ticks.push_back(x);

@@ -367,6 +367,8 @@ TEST(FlatFigure, ANameWithoutRoomIsLeftOut) {
 TEST(Ticks, AreRoundAndWithinTheRange) {
   EXPECT_EQ(roundTicks(1, 4.3), (std::vector<double>{1, 1.5, 2, 2.5, 3, 3.5, 4}));
   EXPECT_EQ(roundTicks(0, 2, 1), (std::vector<double>{0, 1, 2})) << "counts";
+  const double next = std::nextafter(2.5, 3);
+  EXPECT_EQ(roundTicks(2.5, next), (std::vector<double>{2.5, next})) << "no end of ticks";
 }
 
 TEST(Ticks, HaveTheDigitsThatTheRangeNeeds) {
