@@ -95,8 +95,9 @@ constexpr Limit kLimits[] = {
      "more than 200 are taken for failures (Rosen et al. 2018, NeuroImage 169:407)"},
     {"exchanged", "the share of white matter changed to correct its topology", "", 0, 0.05,
      "white matter may be exchanged with grey matter or fluid",
-     "measured: 0.0001 to 0.002 in 18 people's T1s, 0.003 to 0.023 in 12 people's label maps with "
-     "deep grey matter, at most 0.04 in phantoms; 0.06 to 0.18 where labels are exchanged"},
+     "measured: 0.0001 to 0.002 in 18 people's T1s, ten of them simulated, 0.002 to 0.023 in the "
+     "label maps of these ten, which have deep grey matter, at most 0.04 in phantoms; 0.06 to 0.18 "
+     "where labels are exchanged"},
 };
 
 std::string shortNumber(double value) {
