@@ -232,6 +232,22 @@ TEST(Template, OfOnePersonTwiceIsThePerson) {
   EXPECT_GT(readJson(folder / "on/summary.json")["folding_correlation_after"], 0.99);
 }
 
+TEST(Template, MendsFacesThatASphereHasTurnedOver) {
+  TemporaryFolder folder;
+  writePerson(folder);
+  TriangleMesh sphere = io::readSurface(folder / "lh.sphere").mesh;
+  const auto face = sphere.faces.row(40);
+  const Eigen::RowVector3d across =  // beyond the opposite edge
+      sphere.positions.row(face[1]) + sphere.positions.row(face[2]) - sphere.positions.row(face[0]);
+  sphere.positions.row(face[0]) = sphere.positions.row(face[0]).norm() * across.normalized();
+  io::writeSurface(folder / "sphere.surf.gii", sphere);
+  const auto result = explica({"template", folder.path().string(), folder.path().string(),
+                               "--density", "fsaverage3", "--level", "3", "--out", folder / "out"});
+  ASSERT_EQ(result.exitCode, 0) << result;
+  EXPECT_NE(result.err.find("are turned over; "), std::string::npos) << result;
+  EXPECT_LT(readJson(folder / "out/summary.json")["mean_deformation"], 0.1);
+}
+
 TEST(Template, OfOnePersonIsRefused) {
   TemporaryFolder folder;
   writePerson(folder);
