@@ -175,11 +175,7 @@ Termination run(Context& context, const SurfaceSettings& s) {
   }
   warnOf(context, made, summary.hasImage && tissue.hasGrey);
   context.results(summary);
-  judge.flag("defects", static_cast<double>(made.white.defects.size()));
-  if (!given) {
-    judge.flag("exchanged", static_cast<double>(made.white.voxelsChanged) /
-                                static_cast<double>(summary.tissue->whiteVoxels));
-  }
+  if (!given) judge.flag("corrected", made.white.correctedShare);
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
     judge.flag("thickness-mean", surface::meanThickness(made.columnArea, made.columnThickness));

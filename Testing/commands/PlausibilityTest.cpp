@@ -79,8 +79,8 @@ TEST(PlausibilityCommand, WhiteMatterAndFluidExchangedAreFlagged) {
   EXPECT_EQ(exchanged.exitCode, 3) << exchanged;
   const auto summary = readJson(folder / "white-1/summary.json");
   EXPECT_EQ(summary["verdict"], "doubtful");
-  EXPECT_EQ(summary["flags"].front()["name"], "exchanged");
-  EXPECT_EQ(surface("1", {"--accept", "exchanged"}).exitCode, 0);
+  EXPECT_EQ(summary["flags"].front()["name"], "corrected");
+  EXPECT_EQ(surface("1", {"--accept", "corrected"}).exitCode, 0);
 }
 
 TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {
@@ -296,13 +296,13 @@ std::vector<Beyond> beyondEachLimit() {
          return labels;
        },
        {"thickness", "{input}", "--inner", "3", "--tissue", "2"}},
-      {"defects", false,
-       [] {
+      {"corrected", false,
+       [] {  // cavities close to its surface
          Volume<float> labels = ballLabels(40, 44, 48, 2);
          for (std::size_t v = 0; v < labels.size(); ++v) {
            const auto [i, j, k] = labels.grid.subscripts(v);
            const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
-           if (r < 35 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
+           if (r < 40 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
          }
          return labels;
        },

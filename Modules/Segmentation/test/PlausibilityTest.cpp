@@ -81,9 +81,9 @@ TEST(Plausibility, AFlagNamesItsNumberAndItsRange) {
 }
 
 TEST(Plausibility, WhatIsAcceptedIsKeptAndMarked) {
-  EXPECT_TRUE(judge("defects", 1000, {"defects"})->accepted);
-  EXPECT_FALSE(judge("defects", 1000, {"contrast"})->accepted);
-  EXPECT_THROW(checkAccepted({"defects", "defekts"}), InvalidInput);
+  EXPECT_TRUE(judge("corrected", 1, {"corrected"})->accepted);
+  EXPECT_FALSE(judge("corrected", 1, {"contrast"})->accepted);
+  EXPECT_THROW(checkAccepted({"corrected", "korrected"}), InvalidInput);
 }
 
 TEST(Plausibility, TellsImagesFromLabels) {

@@ -27,7 +27,6 @@
 #include "OntoLevel.h"
 #include "PathProfile.h"
 #include "Relaxation.h"
-#include "RibbonField.h"
 #include "RibbonPaths.h"
 
 #include <Eigen/Geometry>
@@ -227,17 +226,6 @@ void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColu
     }
   });
   keepFromMiddles(middleGap(tissue.grid), paths);
-}
-
-/// Trajectories along which an image is searched for borders.
-void takePathsForImage(const TriangleMesh& white, const Monitor& monitor, GrowingColumns& columns) {
-  const RibbonField field(columns.tissue, white, monitor);
-  const Positions normals = geometry::vertexNormals(white);
-  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
-  columns.paths.resize(white.vertexCount());
-  parallelFor(columns.paths.size(), 256, [&](std::size_t v) {
-    columns.paths[v] = field.trace(white.positions.row(v), normals.row(v), faceAt[v]);
-  });
 }
 
 /// The tissue with its white matter's topology corrected.
@@ -445,6 +433,27 @@ void mendTriangles(CorticalSurfaces& result) {
   }
 }
 
+/// Share of the surface's area that lies within a voxel of one whose sign differs.
+double shareNear(const LevelSet& before, const LevelSet& after, const TriangleMesh& mesh) {
+  const Grid& grid = after.grid;
+  const auto differs = [&](int i, int j, int k) {
+    return grid.contains(i, j, k) && (before(i, j, k) > 0) != (after(i, j, k) > 0);
+  };
+  const Eigen::VectorXd areas = geometry::vertexAreas(mesh);
+  Eigen::VectorXd near = Eigen::VectorXd::Zero(areas.size());
+  parallelFor(areas.size(), 4096, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const Vector at = grid.toIndex(mesh.positions.row(row)).array().round();
+    for (int n = 0; n < 27; ++n) {
+      if (differs(static_cast<int>(at[0]) + n % 3 - 1, static_cast<int>(at[1]) + n / 3 % 3 - 1,
+                  static_cast<int>(at[2]) + n / 9 - 1)) {
+        near[row] = areas[row];
+      }
+    }
+  });
+  return near.sum() / areas.sum();
+}
+
 }  // namespace
 
 WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& options,
@@ -467,6 +476,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
   keepRoom(white.mesh, roomOf(white));
+  white.correctedShare = shareNear(tissue.white, white.level, white.mesh);
   return white;
 }
 
@@ -504,7 +514,9 @@ CorticalSurfaces build(const CorticalTissue& tissue, const BorderImages* images,
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
   if (images != nullptr) {
-    takePathsForImage(result.white.mesh, partOf(monitor, 0.5, 0.6), ribbon);
+    const correspondence::Ribbon ofLabels =
+        solve(annulusOf(ribbon.tissue, silent(monitor)), partOf(monitor, 0.5, 0.6));
+    takePaths(result.white.mesh, RibbonPaths(ofLabels), ribbon);
     placeByImage(*images, options.fluid, ribbon, result);
     result.seconds.image = watch.lap();
   }

@@ -96,6 +96,9 @@ void describeTopology(Results& t, const SurfaceSummary& s, const CorticalSurface
   t.count("voxels_changed", "Voxels changed by that", "", made.white.voxelsChanged)
       .inHead()
       .compared();
+  t.share("corrected_share", "Surface beside them",
+          "Share of the white surface's area within a voxel of what was changed.",
+          where(!s.given, made.white.correctedShare));
   t.count("genus", "Genus", "Of the white surface.", where(!s.given, made.white.genus));
 }
 

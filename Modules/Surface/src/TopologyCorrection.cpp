@@ -229,50 +229,6 @@ void cleanPieces(const LevelSet& level, Marks& inside, std::vector<Defect>& defe
   }
 }
 
-/// Voxels of a fill, grown into `set`, and what of `cut` became reachable by that; empty if it is
-/// not worth it.
-struct Trial {
-  std::vector<std::size_t> added;
-  double filledCost = 0;
-  double recoveredCost = 0;
-};
-
-Trial tryFill(HomotopicSet& set, const std::vector<std::size_t>& fill, const Marks& target,
-              Marks& inFill, const LevelSet& level) {
-  Trial trial;
-  std::vector<std::size_t> waiting(fill.rbegin(), fill.rend());
-  for (const std::size_t v : fill) inFill[v] = 1;
-  const auto& offsets = set.offsets();
-  // The fill's voxels first; then whatever of the cuts they have made simple.
-  for (const bool recovering : {false, true}) {
-    if (recovering) {
-      waiting.clear();
-      const std::vector<std::size_t> seeds = trial.added;
-      for (const std::size_t v : seeds) {
-        for (const auto offset : offsets) {
-          const std::size_t w = v + offset;
-          if (target[w] && !set.members()[w]) waiting.push_back(w);
-        }
-      }
-    }
-    while (!waiting.empty()) {
-      const std::size_t v = waiting.back();
-      waiting.pop_back();
-      if (set.members()[v] || !set.canChange(v)) continue;
-      set.members()[v] = 1;
-      trial.added.push_back(v);
-      (target[v] ? trial.recoveredCost : trial.filledCost) += std::abs(level[v]);
-      for (const auto offset : offsets) {
-        const std::size_t w = v + offset;
-        if (set.members()[w]) continue;
-        if (inFill[w] || (recovering && target[w])) waiting.push_back(w);
-      }
-    }
-  }
-  for (const std::size_t v : fill) inFill[v] = 0;
-  return trial;
-}
-
 /// Takes fill voxels back that the set does not need: simple ones, outermost first as listed.
 void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Marks& target) {
   bool changed = true;
@@ -312,59 +268,29 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
   if (grown.members() == inside) return;
 
   monitor.progress(0.8, "choosing between fills and cuts");
+  const auto note = [&](DefectKind kind, std::vector<std::size_t> voxels, double alternative) {
+    std::erase_if(voxels, [&](std::size_t v) { return grown.members()[v] == inside[v]; });
+    if (voxels.empty()) return;
+    defects.push_back(describeChange(level, voxels, kind));
+    defects.back().alternativeCost = alternative;
+  };
+  // Both growths are balls: of each piece between them, which touches no other, either all is
+  // added or nothing.
   Marks difference(inside.size());
   for (std::size_t v = 0; v < inside.size(); ++v) {
-    difference[v] = shrunk.members()[v] && !inside[v];
+    difference[v] = shrunk.members()[v] && !grown.members()[v];
   }
-  auto fills = pieces(difference, grid);
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t f = 0; f < fills.size(); ++f) {
-    order.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).cost, f);
-  }
-  std::sort(order.begin(), order.end());
-  Marks inFill(inside.size(), 0);
-  std::vector<std::pair<Point, double>> accepted;  // place of a fill, what it recovered
-  for (const auto& [cost, f] : order) {
-    const Trial trial = tryFill(grown, fills[f], inside, inFill, level);
-    if (trial.recoveredCost > trial.filledCost) {
-      takeBack(grown, trial.added, inside);
-      accepted.emplace_back(describeChange(level, fills[f], DefectKind::Tunnel).place,
-                            trial.recoveredCost);
+  for (const auto& piece : pieces(difference, grid)) {
+    double filled = 0, lost = 0;
+    for (const std::size_t v : piece) (inside[v] ? lost : filled) += std::abs(level[v]);
+    if (lost > filled) {
+      for (const std::size_t v : piece) grown.members()[v] = 1;
+      takeBack(grown, piece, inside);
+      note(DefectKind::Tunnel, piece, lost);
     } else {
-      for (const std::size_t v : trial.added) grown.members()[v] = 0;
+      note(DefectKind::Handle, piece, filled);
     }
   }
-  // Cuts whose fill was refused get that fill's price as the alternative.
-  const auto report = [&](DefectKind kind, bool cut) {
-    for (std::size_t v = 0; v < inside.size(); ++v) {
-      difference[v] = cut ? inside[v] && !grown.members()[v] : grown.members()[v] && !inside[v];
-    }
-    for (const auto& piece : pieces(difference, grid)) {
-      Defect defect = describeChange(level, piece, kind);
-      double nearest = kInfinity;
-      if (cut) {
-        for (const auto& [fillCost, f] : order) {
-          const Defect fill = describeChange(level, fills[f], DefectKind::Tunnel);
-          const double d = (fill.place - defect.place).squaredNorm();
-          if (d < nearest) {
-            nearest = d;
-            defect.alternativeCost = fillCost;
-          }
-        }
-      } else {
-        for (const auto& [place, recovered] : accepted) {
-          const double d = (place - defect.place).squaredNorm();
-          if (d < nearest) {
-            nearest = d;
-            defect.alternativeCost = recovered;
-          }
-        }
-      }
-      defects.push_back(defect);
-    }
-  };
-  report(DefectKind::Handle, true);
-  report(DefectKind::Tunnel, false);
   inside = grown.members();
 }
 

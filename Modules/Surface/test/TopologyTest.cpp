@@ -106,7 +106,10 @@ TEST(TopologyCorrection, MakesASphereOfNoise) {
     EXPECT_EQ(condition.components, 1);
     EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
     std::int64_t listed = 0;
-    for (const auto& defect : result.defects) listed += defect.voxels;
+    for (const auto& defect : result.defects) {
+      listed += defect.voxels;
+      EXPECT_FALSE(defect.cost > defect.alternativeCost) << defect.cost << " at " << defect.place;
+    }
     EXPECT_GE(listed, result.voxelsChanged);
   }
 }

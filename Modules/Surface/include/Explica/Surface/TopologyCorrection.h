@@ -56,9 +56,10 @@ struct TopologyResult {
 ///
 /// Two homotopic growths bound the correction from both sides: from the deepest voxel outward,
 /// deepest first, within the foreground (what it cannot reach are cuts), and from the border of
-/// the box inward, farthest first, outside the foreground (what it cannot reach are fills).  Each
-/// fill that lets the growth recover more evidence than it overrules replaces the cuts that it
-/// makes needless.  Ranks are Euclidean distances in mm, so anisotropic voxels are treated alike.
+/// the box inward, farthest first, outside the foreground (what it cannot reach are fills).  Both
+/// are balls, so each connected piece between them may be left out or added as a whole: its cuts or
+/// its fills, whichever overrule less evidence; of fills, what the ball does not need is taken
+/// back. Ranks are Euclidean distances in mm, so anisotropic voxels are treated alike.
 ///
 /// @param level  positive inside, nowhere 0, negative on the border of the box
 /// @throws InvalidInput  no positive voxel, or one on the border of the box
