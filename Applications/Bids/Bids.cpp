@@ -29,6 +29,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
+#include <string>
 
 namespace explica::app {
 
@@ -151,8 +153,10 @@ enum class Ended { Done, Failed, Interrupted };
 
 /// Takes one hemisphere through the run and names its results.  Why it failed is in problem.txt
 /// beside the run.
+/// @param toKeep  takes the run's folder and key if only what a group needs shall stay of it
 Ended doHemisphere(Context& context, const BidsSettings& s, const study::Participant& participant,
-                   pipeline::RunHemisphere side, Termination& worst) {
+                   pipeline::RunHemisphere side, Termination& worst,
+                   std::map<fs::path, std::string>& toKeep) {
   const std::string hemisphere(nameOf(side));
   const std::string name = participant.name() + "_hemi-" + hemisphere;
   const fs::path folder = context.outputFolder() / "runs" / name;
@@ -187,7 +191,7 @@ Ended doHemisphere(Context& context, const BidsSettings& s, const study::Partici
       ended = Ended::Interrupted;
     }
     if (s.keep == Keep::Group && ended == Ended::Done) {
-      keepForGroup(folder, key);
+      toKeep.emplace(folder, key);
       return ended;
     }
   } catch (const EnvironmentError&) {
@@ -223,17 +227,19 @@ Termination doParticipants(Context& context, const BidsSettings& s) {
   int done = 0;
   std::vector<std::string> failed, interrupted;
   for (const study::Participant& participant : participants) {
+    std::map<fs::path, std::string> toKeep;  // of both hemispheres: they share steps
     for (const pipeline::RunHemisphere side : sidesOf(s)) {
       if (context.monitor().shouldStop()) {
         worst = Termination::Interrupted;
         break;
       }
       const std::string name = participant.name() + "_hemi-" + std::string(nameOf(side));
-      const Ended ended = doHemisphere(context, s, participant, side, worst);
+      const Ended ended = doHemisphere(context, s, participant, side, worst, toKeep);
       done += ended == Ended::Done;
       if (ended == Ended::Failed) failed.push_back(name);
       if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
+    for (const auto& [folder, key] : toKeep) keepForGroup(folder, key);
     if (!context.given("dry-run") && s.keep == Keep::All) writePage(context, participant);
   }
   context.result("hemispheres_done", done);

@@ -141,6 +141,8 @@ Termination run(Context& context, const StudyParticipantSettings& s) {
         shareSteps(first[run.hemisphere], folder,
                    {"segment", "thickness", "surface", "sphere", "register", "resample",
                     "parcellate", "regions"});
+      } else if (!dry && !first.empty()) {  // a T1's segmentation is the same for both hemispheres
+        shareSteps(first.begin()->second, folder, {"segment"});
       }
       settled = doRun(context, folder, subject.participant, run, account) && settled;
       first.emplace(run.hemisphere, folder);

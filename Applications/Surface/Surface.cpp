@@ -97,6 +97,8 @@ surface::SurfaceSummary summaryOf(const SurfaceSettings& s, const surface::Corti
   summary.tissue = &tissue;
   summary.made = &made;
   summary.hasGrey = tissue.hasGrey;
+  summary.bareShare.reset();
+  if (tissue.hasGrey && tissue.white.size() > 0) summary.bareShare = surface::bareShare(tissue);
   summary.hasImage = s.image.has_value();
   const std::array meshes = {&made.white.mesh, &made.mid, &made.pial};
   parallelFor(tissue.hasGrey ? 3 : 1, 1,
@@ -175,7 +177,10 @@ Termination run(Context& context, const SurfaceSettings& s) {
   }
   warnOf(context, made, summary.hasImage && tissue.hasGrey);
   context.results(summary);
-  if (!given) judge.flag("corrected", made.white.correctedShare);
+  if (!given) {
+    judge.flag("corrected", made.white.correctedShare);
+    if (summary.bareShare) judge.flag("exchanged", *summary.bareShare);
+  }
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
     judge.flag("thickness-mean", surface::meanThickness(made.columnArea, made.columnThickness));

@@ -79,8 +79,8 @@ TEST(PlausibilityCommand, WhiteMatterAndFluidExchangedAreFlagged) {
   EXPECT_EQ(exchanged.exitCode, 3) << exchanged;
   const auto summary = readJson(folder / "white-1/summary.json");
   EXPECT_EQ(summary["verdict"], "doubtful");
-  EXPECT_EQ(summary["flags"].front()["name"], "corrected");
-  EXPECT_EQ(surface("1", {"--accept", "corrected"}).exitCode, 0);
+  EXPECT_EQ(summary["flags"].front()["name"], "exchanged");
+  EXPECT_EQ(surface("1", {"--accept", "exchanged"}).exitCode, 0);
 }
 
 TEST(PlausibilityCommand, ABrainTooLargeIsFlaggedUnlessAccepted) {

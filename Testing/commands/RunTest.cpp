@@ -292,6 +292,27 @@ TEST(Run, BothHemispheresAreDoneWhereLabelsTellThemApart) {
   EXPECT_NE(readText(out / "report.html").find("right"), std::string::npos);
 }
 
+TEST(Run, WhatHemispheresShareStaysTillBothAreDone) {
+  const fs::path fsaverage = fs::path(EXPLICA_REAL_DATA) / "fsaverage";
+  if (!fs::exists(fsaverage)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  fs::create_directories(folder.path() / "data/sub-1/anat");
+  writeText(folder.path() / "data/dataset_description.json",
+            R"({"Name": "balls", "BIDSVersion": "1.8.0", "License": "CC0"})");
+  writeTwoBalls(folder / "data/sub-1/anat/sub-1_desc-aseg_dseg.nii.gz");
+  const auto made =
+      explica({"bids", folder / "data", folder / "out", "participant", "--keep", "group", "--steps",
+               "surface,sphere,register", "--surface.faces", "1000", "--register.level", "3",
+               "--template", fsaverage.string(), "--resample.to", "fsaverage3"});
+  ASSERT_EQ(made.exitCode, 0) << made;
+  const fs::path runs = folder.path() / "out/runs";
+  const fs::path kept = runs / "sub-1_hemi-L/kept.json";
+  ASSERT_TRUE(fs::exists(kept)) << made;
+  EXPECT_FALSE(fs::exists(runs / "sub-1_hemi-L/surface"));
+  // The left run was thinned out after the right one had ended.
+  EXPECT_GE(fs::last_write_time(kept), fs::last_write_time(runs / "sub-1_hemi-R/provenance.json"));
+}
+
 TEST(Run, ASecondImageWithoutAFirstIsRefused) {
   TemporaryFolder folder;
   makePhantom(folder);

@@ -433,25 +433,25 @@ void mendTriangles(CorticalSurfaces& result) {
   }
 }
 
-/// Share of the surface's area that lies within a voxel of one whose sign differs.
-double shareNear(const LevelSet& before, const LevelSet& after, const TriangleMesh& mesh) {
+/// Share of the surface's area between voxels of which one's sign differs.
+double shareBeside(const LevelSet& before, const LevelSet& after, const TriangleMesh& mesh) {
   const Grid& grid = after.grid;
   const auto differs = [&](int i, int j, int k) {
     return grid.contains(i, j, k) && (before(i, j, k) > 0) != (after(i, j, k) > 0);
   };
   const Eigen::VectorXd areas = geometry::vertexAreas(mesh);
-  Eigen::VectorXd near = Eigen::VectorXd::Zero(areas.size());
+  Eigen::VectorXd beside = Eigen::VectorXd::Zero(areas.size());
   parallelFor(areas.size(), 4096, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
-    const Vector at = grid.toIndex(mesh.positions.row(row)).array().round();
-    for (int n = 0; n < 27; ++n) {
-      if (differs(static_cast<int>(at[0]) + n % 3 - 1, static_cast<int>(at[1]) + n / 3 % 3 - 1,
-                  static_cast<int>(at[2]) + n / 9 - 1)) {
-        near[row] = areas[row];
+    const Vector low = grid.toIndex(mesh.positions.row(row)).array().floor();
+    for (int n = 0; n < 8; ++n) {
+      if (differs(static_cast<int>(low[0]) + (n & 1), static_cast<int>(low[1]) + (n >> 1 & 1),
+                  static_cast<int>(low[2]) + (n >> 2))) {
+        beside[row] = areas[row];
       }
     }
   });
-  return near.sum() / areas.sum();
+  return beside.sum() / areas.sum();
 }
 
 }  // namespace
@@ -476,7 +476,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
   keepRoom(white.mesh, roomOf(white));
-  white.correctedShare = shareNear(tissue.white, white.level, white.mesh);
+  white.correctedShare = shareBeside(tissue.white, white.level, white.mesh);
   return white;
 }
 

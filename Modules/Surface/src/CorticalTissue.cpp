@@ -345,6 +345,23 @@ CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges, const 
   return result;
 }
 
+double bareShare(const CorticalTissue& tissue) {
+  enum Role : std::uint8_t { Outside, White, Grey, Insulated };
+  Volume<std::uint8_t> roles(tissue.white.grid, Outside);
+  for (std::size_t v = 0; v < roles.size(); ++v) {
+    roles[v] = tissue.white[v] > 0        ? White
+               : tissue.insulated[v] != 0 ? Insulated
+               : tissue.tissue[v] > 0     ? Grey
+                                          : Outside;
+  }
+  std::array<std::int64_t, 4> faces{};  // of white voxels, by the role beside
+  forContacts(roles, [&](std::uint8_t a, std::uint8_t b) {
+    if ((a == White) != (b == White)) ++faces[a == White ? b : a];
+  });
+  const auto all = static_cast<double>(faces[Grey] + faces[Outside]);
+  return all > 0 ? static_cast<double>(faces[Outside]) / all : 0;
+}
+
 CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions& options,
                                 const Monitor& monitor) {
   return tissueFromMasks(masksFromLabels(labels, options, monitor), options.closeEdges, monitor);

@@ -71,6 +71,8 @@ void describeTissue(Results& t, const SurfaceSummary& s) {
   t.count("filled_voxels", "Voxels joined to them", "Ventricles and deep grey matter.",
           where(!s.given, facts.filledVoxels));
   t.count("grey_voxels", "Voxels labelled grey", "", where(!s.given, facts.greyVoxels));
+  t.share("white_bare_share", "White matter without grey matter upon it",
+          "Of its voxel faces to what is neither white nor insulated.", s.bareShare);
 }
 
 void describeTopology(Results& t, const SurfaceSummary& s, const CorticalSurfaces& made) {
@@ -97,7 +99,7 @@ void describeTopology(Results& t, const SurfaceSummary& s, const CorticalSurface
       .inHead()
       .compared();
   t.share("corrected_share", "Surface beside them",
-          "Share of the white surface's area within a voxel of what was changed.",
+          "Share of the white surface's area between voxels of which one was changed.",
           where(!s.given, made.white.correctedShare));
   t.count("genus", "Genus", "Of the white surface.", where(!s.given, made.white.genus));
 }

@@ -39,7 +39,7 @@ struct WhiteSurface {
   LevelSet level;               ///< topology-corrected
   std::vector<Defect> defects;  ///< corrected, largest first
   std::int64_t voxelsChanged = 0;
-  double correctedShare = 0;  ///< of the area, within a voxel of what was changed
+  double correctedShare = 0;  ///< of the area, between voxels of which one was changed
   std::int64_t genus = 0;
   double edgeLength = 0;  ///< aimed at by the remeshing, mm
   SurfaceTimes seconds;

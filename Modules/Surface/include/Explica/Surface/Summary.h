@@ -48,7 +48,8 @@ struct SurfaceSummary {
   const CorticalSurfaces* made = nullptr;             ///< must outlive this
   std::array<std::optional<SurfaceCheck>, 3> checks;  ///< white, middle, outer
   bool hasGrey = true;
-  double smallestAngleDeg = kNaN;  ///< 5th percentile over the white surface's faces
+  std::optional<double> bareShare = kNaN;  ///< of white matter's border
+  double smallestAngleDeg = kNaN;          ///< 5th percentile over the white surface's faces
   std::optional<ThicknessMeans> thickness = ThicknessMeans{};
   std::optional<double> thicknessKnown = kNaN;  ///< of a sheet, where it is known
   bool hasImage = true;
