@@ -74,8 +74,10 @@ enum class Border {
 /// any number of threads.
 class SurfaceScene {
  public:
+  /// @param before  the same faces where they were, or nullptr: how open a vertex lies is measured
+  ///                anew only near what has moved since
   /// @throws InvalidInput  no face, or a position that is not finite
-  explicit SurfaceScene(const TriangleMesh& mesh);
+  explicit SurfaceScene(const TriangleMesh& mesh, const SurfaceScene* before = nullptr);
   ~SurfaceScene();
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
