@@ -288,7 +288,7 @@ void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& po
 void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vector2d& position,
                      double size, const Colour& colour, const Colour& rim, TextAnchor anchor) {
   const std::vector<Segment2> segments = textSegments(text, position, size, anchor);
-  drawSegments(picture, segments, rim, strokeWidth(size) + 0.45 * size);
+  drawSegments(picture, segments, rim, strokeWidth(size) + kRim * size);
   drawSegments(picture, segments, colour, 1.15 * strokeWidth(size));
 }
 

@@ -4,6 +4,7 @@
 
 #include "Encoding.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Report/Figure.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Canvas.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
+#include "Inks.h"
 
 #include <array>
 #include <cmath>

@@ -37,6 +37,8 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
                      double size, const Colour& colour, const Colour& rim,
                      TextAnchor anchor = TextAnchor::Left);
 
+inline constexpr double kRim = 0.45;  ///< width of that rim on both sides, of the capitals' height
+
 /// Width of a text as drawn, pixels.
 [[nodiscard]] double textWidth(std::string_view text, double size);
 
