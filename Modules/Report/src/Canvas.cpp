@@ -2,22 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Canvas.h"
 
+#include "Encoding.h"
 #include "Explica/Core/Html.h"
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 namespace explica::report {
 
 namespace {
-
-constexpr Colour kWhite = {1, 1, 1};
-
-std::string fixed(double value) {
-  return printed("%.2f", value);
-}
 
 std::string listOf(const std::vector<Point2>& points) {
   return joined(points, " ", [](const Point2& p) { return printed("%.2f,%.2f", p[0], p[1]); });
@@ -92,25 +88,30 @@ void Canvas::put(Shape shape) {
 }
 
 void Canvas::fill(std::vector<Point2> outline, const Colour& colour) {
-  put({std::move(outline), colour, 0, true, {}, {}});
+  put({std::move(outline), colour});
 }
 
-void Canvas::stroke(std::vector<Point2> line, const Colour& colour, double width, bool closed) {
-  put({std::move(line), colour, width, closed, {}, {}});
+void Canvas::stroke(const std::vector<Point2>& line, const Colour& colour, double width,
+                    bool closed) {
+  std::vector<Segment2> segments;
+  for (std::size_t p = 0; p + (closed ? 0 : 1) < line.size(); ++p) {
+    segments.push_back({line[p], line[(p + 1) % line.size()]});
+  }
+  lines(std::move(segments), colour, width);
 }
 
 void Canvas::lines(std::vector<Segment2> segments, const Colour& colour, double width,
                    std::string name) {
-  put({{}, colour, width, false, {}, {}, {}, false, {}, std::move(name), std::move(segments)});
+  put({{}, colour, width, {}, {}, {}, false, {}, std::move(name), std::move(segments)});
 }
 
 void Canvas::text(const Point2& at, std::string words, double size, const Colour& colour,
                   TextAnchor anchor, bool rim) {
-  put({{at}, colour, size, false, std::move(words), {}, anchor, rim});
+  put({{at}, colour, size, std::move(words), {}, anchor, rim});
 }
 
 void Canvas::image(const Point2& corner, const Point2& size, Picture picture) {
-  put({{corner, corner + size}, {}, 0, true, {}, std::move(picture)});
+  put({{corner, corner + size}, {}, 0, {}, std::move(picture)});
 }
 
 void Canvas::rectangle(const Point2& corner, const Point2& size, const Colour& colour) {
@@ -128,37 +129,39 @@ void Canvas::add(const Canvas& part, const Point2& corner) {
 std::string Canvas::svgOf(const Shape& s) {
   // Capitals are 0.72 of the size of these fonts.
   constexpr double kFontPerCapital = 1 / 0.72;
+  constexpr std::array kAnchors = {"start", "middle", "end"};
   const std::string colour = hexText(s.colour);
-  const std::string line = "fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" +
-                           fixed(s.width) +
-                           "\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
   if (s.words) {
-    const char* anchor = s.anchor == TextAnchor::Left     ? "start"
-                         : s.anchor == TextAnchor::Middle ? "middle"
-                                                          : "end";
     const std::string rim =
-        "paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"" + fixed(kRim * s.width) + "\" ";
-    return "<text x=\"" + fixed(s.points[0][0]) + "\" y=\"" + fixed(s.points[0][1]) +
-           "\" font-size=\"" + fixed(s.width * kFontPerCapital) + "\" text-anchor=\"" + anchor +
-           "\" " + (s.rim ? rim : "") + "fill=\"" + colour + "\">" + escapeHtml(*s.words) +
-           "</text>\n";
+        printed(" paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"%.2f\"", kRim * s.width);
+    return printed("<text x=\"%.2f\" y=\"%.2f\" font-size=\"%.2f\" text-anchor=\"%s\" fill=\"%s\"",
+                   s.points[0].x(), s.points[0].y(), s.width * kFontPerCapital,
+                   kAnchors[static_cast<std::size_t>(s.anchor)], colour.c_str()) +
+           (s.rim ? rim : "") + ">" + escapeHtml(*s.words) + "</text>\n";
   }
-  if (s.image) return svgImage(*s.image, s.points[0], s.points[1] - s.points[0]);
-  if (!s.segments.empty()) {
-    std::string path;
-    const Segment2* before = nullptr;
-    for (const Segment2& segment : s.segments) {
-      const bool joins = before && (segment.from - before->to).norm() < s.width;
-      path += (joins ? "L" : "M") + listOf({segment.from}) + "L" + listOf({segment.to});
-      before = &segment;
-    }
-    return "<path inkscape:label=\"" + escapeHtml(s.name) + "\" d=\"" + path + "\" " + line;
+  if (s.image) {
+    const Point2 corner = s.points[0], size = s.points[1] - corner;
+    return printed("<image x='%g' y='%g' width='%g' height='%g' href='data:image/png;base64,",
+                   corner.x(), corner.y(), size.x(), size.y()) +
+           base64(encodePng(*s.image)) + "'/>\n";
   }
-  if (s.width == 0) {
+  if (s.segments.empty()) {
     return "<polygon points=\"" + listOf(s.points) + "\" fill=\"" + colour + "\"/>\n";
   }
-  return std::string(s.closed ? "<polygon" : "<polyline") + " points=\"" + listOf(s.points) +
-         "\" " + line;
+  std::string path;
+  Point2 end = s.segments.front().from;
+  for (const Segment2& segment : s.segments) {
+    const bool joins = !path.empty() && (segment.from - end).norm() < s.width;
+    if (!joins || segment.from != end) path += (joins ? "L" : "M") + listOf({segment.from});
+    path += "L" + listOf({segment.to});
+    end = segment.to;
+  }
+  return "<path " + (s.name.empty() ? "" : "inkscape:label=\"" + escapeHtml(s.name) + "\" ") +
+         printed(
+             "fill=\"none\" stroke=\"%s\" stroke-width=\"%.2f\" stroke-linejoin=\"round\" "
+             "stroke-linecap=\"round\" d=\"",
+             colour.c_str(), s.width) +
+         path + "\"/>\n";
 }
 
 std::string Canvas::svg() const {
@@ -195,18 +198,37 @@ Picture Canvas::picture(double scale) const {
       if (!s.rim) drawText(picture, *s.words, points[0], size, s.colour, s.anchor);
     } else if (s.image) {
       drawImage(picture, *s.image, points[0], points[1]);
-    } else if (s.width == 0) {
+    } else if (s.segments.empty()) {
       fillOutline(picture, points, s.colour);
     } else {
       std::vector<Segment2> lines = s.segments;
       for (Segment2& line : lines) line = {scale * line.from, scale * line.to};
-      for (std::size_t p = 0; p + (s.closed ? 0 : 1) < points.size(); ++p) {
-        lines.push_back({points[p], points[(p + 1) % points.size()]});
-      }
       drawSegments(picture, lines, s.colour, scale * s.width);
     }
   }
   return picture;
+}
+
+std::string barTitle(const ColourScale& scale) {
+  return scale.unit.empty() ? scale.title : scale.title + " [" + unitText(scale.unit) + "]";
+}
+
+void drawColourBar(Canvas& canvas, const ColourScale& scale, const Point2& corner,
+                   const Point2& size, double letters) {
+  constexpr int kSteps = 128;
+  for (int n = 0; n < kSteps; ++n) {  // each reaches below the next, so that no seam shows
+    const double above = size.y() * n / kSteps;
+    canvas.rectangle(corner + Point2(0, above), {size.x(), size.y() - above},
+                     colourAt(scale.map, 1 - (n + 0.5) / kSteps));
+  }
+  const double range = scale.high - scale.low;
+  for (const double value : roundTicks(scale.low, scale.high)) {
+    const Point2 at = corner + Point2(size.x(), (scale.high - value) / range * size.y());
+    canvas.lines({{at, at + Point2(0.4 * letters, 0)}}, kInk, 1);
+    canvas.text(at + Point2(0.8 * letters, 0.5 * letters), tickText(value, range), letters, kInk,
+                TextAnchor::Left);
+  }
+  canvas.text(corner - Point2(0, letters), barTitle(scale), letters, kInk, TextAnchor::Left);
 }
 
 }  // namespace explica::report

@@ -67,10 +67,7 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
   for (const FilmFrame& frame : frames) {
     Picture whole(options.width, options.height);
     scene = SurfaceScene(frame.mesh, scene ? &*scene : nullptr);
-    pastePicture(
-        whole,
-        scene->render(camera, look.colours, look.filling, drawn, look.keys, Border::AroundFaces), 0,
-        0);
+    pastePicture(whole, scene->render(camera, look.colours, look.filling, drawn, look.keys), 0, 0);
     drawProgress(whole, pictures.size(), frames.size(), letters);
     drawText(whole, frame.caption, Eigen::Vector2d(0.5 * options.width, options.height - letters),
              letters, {0.02F, 0.02F, 0.02F}, TextAnchor::Middle);

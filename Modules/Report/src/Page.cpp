@@ -5,8 +5,8 @@
 #include "Encoding.h"
 #include "Explica/Core/Html.h"
 #include "Explica/Core/Text.h"
+#include "Explica/Report/Canvas.h"
 #include "Explica/Report/Chart.h"
-#include "Explica/Report/Drawing.h"
 #include "PageParts.h"
 
 #include <algorithm>
@@ -88,19 +88,13 @@ std::string stepHtml(const ReportStep& step) {
 
 /// All steps in one fold, which is open where one of them is not done.
 std::string stepsHtml(const std::vector<ReportStep>& steps) {
-  std::string html;
-  double seconds = 0;
-  bool isDone = true;
-  for (const ReportStep& step : steps) {
-    html += stepHtml(step);
-    seconds += step.seconds;
-    isDone = isDone && step.state == StepState::Done;
-  }
-  return std::string("<section id='made'><h2>How it was made</h2><details") +
-         (isDone ? "" : " open") +
-         printed("><summary>%zu step%s, %.0f s</summary>", steps.size(),
-                 steps.size() == 1 ? "" : "s", seconds) +
-         html + "</details></section>";
+  const bool isDone =
+      std::ranges::all_of(steps, [](const auto& step) { return step.state == StepState::Done; });
+  std::string html = std::string("<section id='made'><h2>How it was made</h2><details") +
+                     (isDone ? "" : " open") + "><summary>Steps: " + std::to_string(steps.size()) +
+                     "</summary>";
+  for (const ReportStep& step : steps) html += stepHtml(step);
+  return html + "</details></section>";
 }
 
 /// JSON as it may stand in a script element.
@@ -275,8 +269,7 @@ std::string barHtml(const ColourScale& scale) {
   for (int s = 0; s <= kStops; ++s) {
     gradient += (s == 0 ? "" : ",") + hexText(colourAt(scale.map, static_cast<double>(s) / kStops));
   }
-  std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(scale.title) +
-                     (scale.unit.empty() ? "" : " [" + escapeHtml(unitText(scale.unit)) + "]") +
+  std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(barTitle(scale)) +
                      "</span><div class='scale-bar' style='background:linear-gradient(to right," +
                      gradient + ")'></div><div class='scale-ticks'>";
   const double range = scale.high - scale.low;
@@ -404,17 +397,11 @@ std::string chartGridHtml(const Charts& charts) {
   return html + "</div>";
 }
 
-/// The charts of one group, its details folded away; of several groups the first is open.
+/// The charts of one group under its name, which folds them away.
 std::string chartGroupHtml(const Charts& group, bool isOpen) {
-  Charts shown, details;
-  for (const ReportChart* chart : group) (chart->detail ? details : shown).push_back(chart);
-  std::string html = chartGridHtml(shown);
-  if (!details.empty()) {
-    html += "<details><summary>" + std::to_string(details.size()) + " more</summary>" +
-            chartGridHtml(details) + "</details>";
-  }
   const std::string& name = group.front()->group;
-  return name.empty() ? html : figureHtml("", name, "", isOpen, html);
+  return name.empty() ? chartGridHtml(group)
+                      : figureHtml("", name, "", isOpen, chartGridHtml(group));
 }
 
 std::string chartsHtml(const std::vector<ReportChart>& charts) {

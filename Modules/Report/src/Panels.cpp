@@ -74,26 +74,6 @@ void drawPanel(Canvas& canvas, Scenes& scenes, const Panel& panel, const Cell& c
               TextAnchor::Left);
 }
 
-/// The colour bar right of the panels.
-void drawBar(Canvas& canvas, const ColourScale& scale, int left, double letters) {
-  constexpr int kSteps = 128;
-  const double tall = std::min(0.6 * canvas.height(), 0.3 * canvas.width());
-  const double top = (canvas.height() - tall) / 2, range = scale.high - scale.low;
-  canvas.layer("colour-bar");
-  for (int n = 0; n < kSteps; ++n) {  // each over the seam to the one before
-    canvas.rectangle({left, top + tall * n / kSteps}, {1.2 * letters, tall * (kSteps - n) / kSteps},
-                     colourAt(scale.map, 1 - (n + 0.5) / kSteps));
-  }
-  for (const double value : roundTicks(scale.low, scale.high)) {
-    const Point2 at(left + 1.2 * letters, top + (scale.high - value) / range * tall);
-    canvas.lines({{at, at + Point2(0.3 * letters, 0)}}, kInk, 0.08 * letters);
-    canvas.text(at + Point2(0.6 * letters, 0.5 * letters), tickText(value, range), letters, kInk,
-                TextAnchor::Left);
-  }
-  const std::string unit = scale.unit.empty() ? "" : " [" + unitText(scale.unit) + "]";
-  canvas.text({left, top - letters}, scale.title + unit, letters, kInk, TextAnchor::Left);
-}
-
 }  // namespace
 
 Canvas panelFigure(const std::vector<std::vector<Panel>>& rows,
@@ -122,7 +102,10 @@ Canvas panelFigure(const std::vector<std::vector<Panel>>& rows,
     }
     cell.top += cell.height;
   }
-  if (scale) drawBar(canvas, *scale, content, letters);
+  if (!scale) return canvas;
+  const double tall = std::min(0.6 * height, 0.3 * width);
+  canvas.layer("colour-bar");
+  drawColourBar(canvas, *scale, {content, (height - tall) / 2}, {1.2 * letters, tall}, letters);
   return canvas;
 }
 

@@ -100,9 +100,6 @@ struct SurfaceScene::Implementation {
   Scene scene;
 
   void build(const TriangleMesh& mesh, const Implementation* before);
-  /// True if a point of a face lies within `reach` of where two of its corners' keys meet.
-  [[nodiscard]] bool onBorder(Eigen::Index face, const std::array<float, 3>& weight, int nearest,
-                              const std::vector<std::int32_t>& keys, double reach) const;
   /// Of each vertex whether what has moved may lie within `skyReach`, now or before.
   [[nodiscard]] std::vector<std::uint8_t> nearMoved(const Implementation& before) const;
   void measureOpenness(const Implementation* before);
@@ -120,16 +117,15 @@ struct SurfaceScene::Implementation::Tint {
   const std::vector<Colour>& colours;  ///< one a vertex, or none
   Filling filling;
   const std::vector<std::int32_t>& keys;  ///< one a vertex, or none
-  Border border;
-  std::vector<std::uint8_t> rim;  ///< of Border::AroundFaces, see rimOf()
-  double reach = 0;               ///< mm, half the line
+  std::vector<std::uint8_t> rim;          ///< see rimOf()
+  double reach = 0;                       ///< mm, half the line
 
   [[nodiscard]] Colour at(const Implementation& surface, Eigen::Index face,
                           const std::array<float, 3>& weight) const;
 
  private:
   [[nodiscard]] bool onLine(const Implementation& surface, Eigen::Index face,
-                            const std::array<float, 3>& weight, int nearest) const;
+                            const std::array<float, 3>& weight) const;
 };
 
 void SurfaceScene::Implementation::build(const TriangleMesh& mesh, const Implementation* before) {
@@ -168,19 +164,6 @@ void SurfaceScene::Implementation::build(const TriangleMesh& mesh, const Impleme
   measureOpenness(before);
 }
 
-bool SurfaceScene::Implementation::onBorder(Eigen::Index face, const std::array<float, 3>& weight,
-                                            int nearest, const std::vector<std::int32_t>& keys,
-                                            double reach) const {
-  const std::int32_t own = faces(face, nearest);
-  for (int k = 0; k < 3; ++k) {
-    const std::int32_t other = faces(face, k);
-    if (keys[other] == keys[own]) continue;
-    const double edge = (positions.row(own) - positions.row(other)).norm();
-    if (0.5 * (weight[nearest] - weight[k]) * edge < reach) return true;
-  }
-  return false;
-}
-
 std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
     const std::vector<std::int32_t>& keys) const {
   std::unordered_map<std::uint64_t, int> count;  // of faces within, by edge
@@ -203,11 +186,7 @@ std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
 }
 
 bool SurfaceScene::Implementation::Tint::onLine(const Implementation& surface, Eigen::Index face,
-                                                const std::array<float, 3>& weight,
-                                                int nearest) const {
-  if (border == Border::BetweenVertices) {
-    return surface.onBorder(face, weight, nearest, keys, reach);
-  }
+                                                const std::array<float, 3>& weight) const {
   if (rim[face] == 0) return false;
   std::array<Eigen::Vector3f, 3> corner;
   for (int k = 0; k < 3; ++k) corner[k] = surface.positions.row(surface.faces(face, k)).transpose();
@@ -222,8 +201,7 @@ bool SurfaceScene::Implementation::Tint::onLine(const Implementation& surface, E
 Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eigen::Index face,
                                               const std::array<float, 3>& weight) const {
   constexpr Colour kPlain = {0.60f, 0.58f, 0.56f};
-  const bool parts = !keys.empty() && border == Border::AroundFaces;
-  const bool outside = parts && !surface.isWithin(face, keys);
+  const bool outside = !keys.empty() && !surface.isWithin(face, keys);
   const auto nearest = static_cast<int>(std::ranges::max_element(weight) - weight.begin());
   Colour base = kPlain;
   if (!colours.empty() && filling == Filling::Discrete && !outside) {
@@ -241,7 +219,7 @@ Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eig
     }
     for (float& c : base) c /= sum;
   }
-  if (!keys.empty() && onLine(surface, face, weight, nearest)) {
+  if (!keys.empty() && onLine(surface, face, weight)) {
     for (float& c : base) c *= kBorderShade;
   }
   return base;
@@ -264,22 +242,17 @@ std::vector<std::uint8_t> SurfaceScene::Implementation::nearMoved(
   std::vector<std::uint8_t> holds(index(size), 0), isNear(index(size), 0);
   const auto mark = [&](const Eigen::Array3i& cell) {
     if (std::exchange(holds[index(cell)], 1) != 0) return;
-    Eigen::Array3i d;
-    for (d.z() = -kFar - 1; d.z() <= kFar + 1; ++d.z()) {
-      for (d.y() = -kFar - 1; d.y() <= kFar + 1; ++d.y()) {
-        for (d.x() = -kFar - 1; d.x() <= kFar + 1; ++d.x()) {
-          if ((d.abs() - 1).max(0).square().sum() <= kFar * kFar) isNear[index(cell + d)] = 1;
-        }
-      }
+    constexpr int kSide = 2 * kFar + 3;
+    for (int n = 0; n < kSide * kSide * kSide; ++n) {
+      const Eigen::Array3i d =
+          Eigen::Array3i(n % kSide, n / kSide % kSide, n / kSide / kSide) - kFar - 1;
+      if ((d.abs() - 1).max(0).square().sum() <= kFar * kFar) isNear[index(cell + d)] = 1;
     }
   };
-  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    const auto moved = [&](std::int32_t v) { return positions.row(v) != before.positions.row(v); };
-    if (!moved(faces(f, 0)) && !moved(faces(f, 1)) && !moved(faces(f, 2))) continue;
-    for (int k = 0; k < 3; ++k) {
-      mark(cellOf(positions.row(faces(f, k))));
-      mark(cellOf(before.positions.row(faces(f, k))));
-    }
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (positions.row(v) == before.positions.row(v)) continue;
+    mark(cellOf(positions.row(v)));
+    mark(cellOf(before.positions.row(v)));
   }
   std::vector<std::uint8_t> ofVertex(static_cast<std::size_t>(positions.rows()));
   for (std::size_t v = 0; v < ofVertex.size(); ++v) {
@@ -350,7 +323,7 @@ const std::vector<float>& SurfaceScene::openness() const {
 
 Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& colours,
                              Filling filling, const SurfacePictureOptions& options,
-                             const std::vector<std::int32_t>& keys, Border border) const {
+                             const std::vector<std::int32_t>& keys) const {
   const Implementation& self = *implementation_;
   if (!colours.empty() && colours.size() != static_cast<std::size_t>(self.positions.rows())) {
     throw InvalidInput("colours: found " + std::to_string(colours.size()) +
@@ -375,12 +348,8 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
       (0.5f * static_cast<float>(options.height * options.samples) * step) * up -
       (0.5f * static_cast<float>(options.width * options.samples) * step) * right;
   const auto occlusion = static_cast<float>(options.occlusion);
-  const bool around = !keys.empty() && border == Border::AroundFaces;
-  const Implementation::Tint paint{colours,
-                                   filling,
-                                   keys,
-                                   border,
-                                   around ? self.rimOf(keys) : std::vector<std::uint8_t>(),
+  const Implementation::Tint paint{colours, filling, keys,
+                                   keys.empty() ? std::vector<std::uint8_t>() : self.rimOf(keys),
                                    kBorder * camera.halfHeight / options.height};
 
   Picture picture(options.width, options.height);

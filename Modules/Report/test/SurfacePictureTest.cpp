@@ -45,8 +45,7 @@ TEST(SurfacePicture, ARegionsColourEndsAtTheEdgesOfItsFaces) {
       cameraTowards(mesh, Vector(-1, 0, 0), Vector(0, 0, 1), options.width, options.height);
   const SurfaceScene scene(mesh);
   for (const Filling filling : {Filling::Smooth, Filling::Discrete}) {
-    const Picture picture =
-        scene.render(camera, colours, filling, options, keys, Border::AroundFaces);
+    const Picture picture = scene.render(camera, colours, filling, options, keys);
     int red = 0, blue = 0, mixed = 0;
     for (int x = 0; x < options.width; ++x) {
       const std::uint8_t* p = picture.pixel(x, options.height / 2 + 1);

@@ -120,11 +120,7 @@ function boxOf(at, filter = () => true) {
   }
   return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
 }
-function joined(boxes) {
-  const low = [0, 1, 2].map((c) => Math.min(...boxes.map((box) => box.low[c])));
-  const high = [0, 1, 2].map((c) => Math.max(...boxes.map((box) => box.high[c])));
-  return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
-}
+const joined = (boxes) => boxOf(boxes.flatMap((box) => [...box.low, ...box.high]));
 // Of all vertices, or of those of a mask in the normals given, from all faces about them.
 function normalsOf(at, faces, normals = new Float32Array(at.length), mask = null) {
   if (mask) for (let v = 0; v < mask.length; ++v) if (mask[v]) normals.fill(0, 3 * v, 3 * v + 3);

@@ -22,7 +22,8 @@ class Canvas {
   /// What is drawn from here on is of a layer that Inkscape shows by this name.
   void layer(std::string name) { layer_ = std::move(name); }
   void fill(std::vector<Point2> outline, const Colour& colour);
-  void stroke(std::vector<Point2> line, const Colour& colour, double width, bool closed = false);
+  void stroke(const std::vector<Point2>& line, const Colour& colour, double width,
+              bool closed = false);
   /// Lines that do not darken where they meet; in the SVG one path of this name, joined where one
   /// begins less than a width from where the one before ends.
   void lines(std::vector<Segment2> segments, const Colour& colour, double width,
@@ -47,10 +48,9 @@ class Canvas {
   struct Shape {
     std::vector<Point2> points;
     Colour colour = {0, 0, 0};
-    double width = 0;  ///< of lines, height of a text's capitals; 0 fills
-    bool closed = false;
-    std::optional<std::string> words;
-    std::optional<Picture> image;  ///< between two corners
+    double width = 0;  ///< of lines, height of a text's capitals
+    std::optional<std::string> words = {};
+    std::optional<Picture> image = {};  ///< between two corners
     TextAnchor anchor = TextAnchor::Left;
     bool rim = false;
     std::string layer = {}, name = {};
@@ -62,5 +62,12 @@ class Canvas {
   std::string layer_;
   std::vector<Shape> shapes_;
 };
+
+/// Draws a scale's colours as a standing bar with round ticks at its right and barTitle() above.
+/// @param letters  height of capitals
+void drawColourBar(Canvas& canvas, const ColourScale& scale, const Point2& corner,
+                   const Point2& size, double letters);
+/// "thickness [mm]"
+[[nodiscard]] std::string barTitle(const ColourScale& scale);
 
 }  // namespace explica::report

@@ -120,7 +120,6 @@ struct ReportChart {
   std::string id;
   std::string svg;
   std::string group = {};  ///< heading over the charts of a group, which follow each other
-  bool detail = false;     ///< folded away until somebody asks for it
 };
 
 /// Rows of words and numbers.
