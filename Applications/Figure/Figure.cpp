@@ -49,7 +49,7 @@ struct FigureSettings {
 void declare(Declaration& d, FigureSettings& s) {
   d.synopsis("a figure for print: surfaces of both hemispheres, flat maps, one colour bar")
       .description(
-          R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names, and with a folded surface of the same mesh in the figure the directions of the body are shown. All surfaces have one scale, all maps one colour bar. figure.svg has a layer for the pictures, one for the titles and one for the colour bar, whose text can be edited.)")
+          R"(Each map or annotation colours the surfaces of its hemisphere with as many vertices, in any order; of several maps the first. A map named curv or sulc is drawn beneath as light gyri and dark sulci. On flat maps (one z) annotations are outlines with names, and with a folded surface of the same mesh in the figure the directions of the body are shown. All surfaces have one scale, all maps one colour bar. figure.svg has layers for the pictures of the surfaces, the outlines of regions (a path each), their names, the titles, the scale and the colour bar, whose lines and text can be edited.)")
       .example(
           "explica figure lh.inflated rh.inflated lh.thickness rh.thickness lh.sulc rh.sulc --out "
           "figure",
@@ -278,9 +278,9 @@ Termination run(Context& context, const FigureSettings& s) {
   const auto scale = scaleOf(s, all);
   for (Shown& shown : all) paint(shown, scale);
   auto step = context.step("draw");
-  const report::PanelFigure figure = report::panelFigure(rowsOf(s, all), scale, s.size);
-  report::writePng(context.output("figure.png"), figure.picture);
-  writeTextFile(context.output("figure.svg"), figure.svg);
+  const report::Canvas figure = report::panelFigure(rowsOf(s, all), scale, s.size);
+  report::writePng(context.output("figure.png"), figure.picture());
+  writeTextFile(context.output("figure.svg"), figure.svg());
   return Termination::NotRun;
 }
 

@@ -134,7 +134,7 @@ TEST(HeartCommand, ImagesLieBeneathTheBoundariesAndBeat) {
     const std::string drawing = readText(folder / ("out/" + std::string(file)));
     EXPECT_NE(drawing.find("<image"), std::string::npos) << file;
     EXPECT_NE(drawing.find("boundaries on the image"), std::string::npos) << file;
-    EXPECT_NE(drawing.find("<polyline"), std::string::npos) << file;
+    EXPECT_NE(drawing.find("<path"), std::string::npos) << file;
     EXPECT_EQ(drawing.find("left out: opening"), std::string::npos) << file;
   }
   EXPECT_EQ(readText(folder / "out/slices.gif").find("GIF89a"), 0U);

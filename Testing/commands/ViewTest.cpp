@@ -226,11 +226,15 @@ TEST_F(Figure, HasBothHemispheresFlatMapsAndOneColourBarInLayers) {
       "a");
   ASSERT_EQ(made.exitCode, 0) << made;
   const std::string svg = readText(folder_ / "a/figure.svg");
-  for (const char* text : {"id='surfaces'", "id='titles'", "id='colour-bar'", ">left, lateral<",
-                           ">right, medial<", ">height (mm)<"}) {
+  for (const char* text :
+       {"<g id=\"surfaces\" inkscape:groupmode=\"layer\"", "id=\"titles\"", "id=\"colour-bar\"",
+        "id=\"scale\"", ">left, lateral<", ">right, medial<", ">height [mm]<"}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }
   EXPECT_LT(svg.find(">left, lateral<"), svg.find(">right, lateral<"));
+  const std::size_t outlines = svg.find("id=\"outlines\""), names = svg.find("id=\"names\"");
+  EXPECT_LT(outlines, svg.find("<path inkscape:label=\"V1\"")) << "a path that can be edited";
+  EXPECT_LT(names, svg.find(">V1</text>")) << "and text";
   const auto again = draw(
       {"L.surf.gii", "L.shape.gii", "R.surf.gii", "R.shape.gii", "flat.surf.gii", "L.label.gii"},
       "b", {"--threads", "1"});

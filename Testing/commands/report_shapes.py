@@ -49,6 +49,16 @@ try:
     ask("byId('canvas').dispatchEvent(new MouseEvent('click'))")
     check("a click moves the slices",
           browser.eventually(lambda: ask("return byId('cut-1').toDataURL()") != slices))
+    ask("const real = window.requestAnimationFrame; "
+        "window.requestAnimationFrame = (work) => real((time) => work(10 * time));")  # as if pictures took long
+    width = ask("return byId('canvas').width")
+    for _ in range(6):
+        ask("byId('canvas').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}))")
+        browser.drawn(driver)
+    less = ask("return [Number(byId('canvas').dataset.less), byId('canvas').width]")
+    check("a view that moves slowly has fewer faces and pixels: %s" % less, less[0] > 0 and less[1] < width)
+    check("and all of them where it stands", browser.eventually(
+        lambda: ask("return [byId('canvas').dataset.less, byId('canvas').width]") == ["", width]))
     for entry in driver.get_log("browser"):
         check("console: " + entry["message"][:200], entry["level"] != "SEVERE")
 finally:

@@ -18,6 +18,7 @@ void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::
   std::map<Label, report::Colour> colours;
   for (const io::LabelEntry& entry : regions.table) {
     colours[entry.key] = report::colourOfLabel(entry.key, entry.colour);
+    marks.regions.try_emplace(colours[entry.key], entry.name);
   }
   const auto colourOf = [&](Label key) {
     const auto found = colours.find(key);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Drawing.h"
 
-#include "Encoding.h"
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
@@ -20,7 +19,7 @@ struct Glyph {
 };
 
 // Codes beyond ASCII stand for signs of units: 1 is a superscript two, 2 a degree, 3 a superscript
-// minus.
+// minus, 4 a superscript three.
 constexpr Glyph kGlyphs[] = {
     {'0', "103041453616050110"},
     {'1', "152620 1030"},
@@ -108,6 +107,7 @@ constexpr Glyph kGlyphs[] = {
     {1, "0626250323"},
     {2, "0515160605"},
     {3, "0525"},
+    {4, "062615241303"},
 };
 
 constexpr double kRows = 6;       // capitals' height in rows
@@ -141,6 +141,7 @@ std::string glyphCodes(std::string_view text) {
     if (sign == "\u00b2") code = 1;
     if (sign == "\u00b0") code = 2;
     if (sign == "\u207b") code = 3;
+    if (sign == "\u00b3") code = 4;
     if (sign == "\u2212" || sign == "\u2013") code = '-';
     if (sign == "\u00b9") code = '\'';
     codes.push_back(code);
@@ -288,7 +289,7 @@ void drawText(Picture& picture, std::string_view text, const Eigen::Vector2d& po
 void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vector2d& position,
                      double size, const Colour& colour, const Colour& rim, TextAnchor anchor) {
   const std::vector<Segment2> segments = textSegments(text, position, size, anchor);
-  drawSegments(picture, segments, rim, strokeWidth(size) + 0.45 * size);
+  drawSegments(picture, segments, rim, strokeWidth(size) + kRim * size);
   drawSegments(picture, segments, colour, 1.15 * strokeWidth(size));
 }
 
@@ -347,40 +348,6 @@ std::string unitText(std::string_view unit) {
     }
   }
   return text;
-}
-
-std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
-                     const Eigen::Vector2d& size) {
-  return printed("<image x='%g' y='%g' width='%g' height='%g' href='data:image/png;base64,",
-                 corner.x(), corner.y(), size.x(), size.y()) +
-         base64(encodePng(picture)) + "'/>\n";
-}
-
-void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width,
-                   int height) {
-  const Colour black = {0.02f, 0.02f, 0.02f};
-  const double size = std::clamp(height / 24.0, 8.0, 14.0);
-  const std::string title =
-      scale.unit.empty() ? scale.title : scale.title + " [" + scale.unit + "]";
-  const int top = y + static_cast<int>(3 * size);
-  const int barWidth = std::max(8, width / 6);
-  const int barHeight = y + height - top - static_cast<int>(size);
-  drawText(picture, title, Eigen::Vector2d(x, y + 1.5 * size), size, black);
-  for (int row = 0; row < barHeight; ++row) {
-    const Colour colour = colourAt(scale.map, 1 - (row + 0.5) / barHeight);
-    for (int column = 0; column < barWidth; ++column) {
-      if (top + row >= picture.height || x + column >= picture.width) continue;
-      std::uint8_t* pixel = picture.pixel(x + column, top + row);
-      for (int c = 0; c < 3; ++c) pixel[c] = encodeSrgb(colour[c]);
-    }
-  }
-  const double range = scale.high - scale.low;
-  for (const double value : roundTicks(scale.low, scale.high)) {
-    const double at = top + (scale.high - value) / range * barHeight;
-    drawSegments(picture, {{{x + barWidth, at}, {x + barWidth + 0.4 * size, at}}}, black, 1);
-    drawText(picture, tickText(value, range),
-             Eigen::Vector2d(x + barWidth + 0.8 * size, at + 0.5 * size), size, black);
-  }
 }
 
 }  // namespace explica::report

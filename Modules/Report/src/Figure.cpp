@@ -3,7 +3,8 @@
 #include "Explica/Report/Figure.h"
 
 #include "Explica/Core/Errors.h"
-#include "Explica/Report/Drawing.h"
+#include "Explica/Report/Canvas.h"
+#include "Explica/Report/Mosaic.h"
 
 #include <algorithm>
 #include <cmath>
@@ -105,21 +106,16 @@ Picture withColourBar(Picture tiled, const SurfacePaint& paint) {
   constexpr int kGap = 10;  // pixels
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
   const double letters = std::clamp(barHeight / 24.0, 8.0, 14.0);
-  const std::string title = paint.scale.unit.empty()
-                                ? paint.scale.title
-                                : paint.scale.title + " [" + paint.scale.unit + "]";
-  const int width = std::max({90, std::min(130, tiled.height / 5 - 2 * kGap),
-                              static_cast<int>(std::ceil(textWidth(title, letters)))});
-  Picture whole(tiled.width + width + 2 * kGap, tiled.height);
-  pastePicture(whole, tiled, 0, 0);
-  ColourScale untitled = paint.scale;
-  untitled.title.clear();
-  untitled.unit.clear();
-  const int left = tiled.width + kGap, top = (tiled.height - barHeight) / 2;
-  drawColourBar(whole, untitled, left, top, width, barHeight);
-  drawText(whole, title, Eigen::Vector2d(left, top + 1.5 * letters), letters,
-           {0.02f, 0.02f, 0.02f});
-  return whole;
+  const int width =
+      std::max({90, std::min(130, tiled.height / 5 - 2 * kGap),
+                static_cast<int>(std::ceil(textWidth(barTitle(paint.scale), letters)))});
+  Canvas whole(tiled.width + width + 2 * kGap, tiled.height);
+  drawColourBar(whole, paint.scale,
+                {tiled.width + kGap, (tiled.height - barHeight) / 2 + 3 * letters},
+                {width / 6.0, barHeight - 4 * letters}, letters);
+  const Point2 size(tiled.width, tiled.height);
+  whole.image({0, 0}, size, std::move(tiled));
+  return whole.picture();
 }
 
 WorldBox boxAbove(const Volume<float>& image, double threshold) {
@@ -137,21 +133,11 @@ WorldBox boxAbove(const Volume<float>& image, double threshold) {
 Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours, int count,
                     int height) {
   WorldBox box;
-  for (const Contour& contour : contours) {
-    if (contour.mesh->vertexCount() == 0) continue;
-    box.low = box.low.cwiseMin(contour.mesh->positions.colwise().minCoeff().transpose());
-    box.high = box.high.cwiseMax(contour.mesh->positions.colwise().maxCoeff().transpose());
-  }
+  for (const Contour& contour : contours) box.add(*contour.mesh);
   const WorldBox tissue = boxAbove(image, 0);
   if (box.empty()) box = tissue;
   if (box.empty()) throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
-  std::vector<float> values;
-  for (const float v : image.data) {
-    if (v > 0 && std::isfinite(v)) values.push_back(v);
-  }
-  std::ranges::sort(values);
-  ColourScale grey{ColourMap::Grey, 0, 1, "", ""};
-  if (!values.empty()) grey.high = 1.05 * values[values.size() - 1 - values.size() / 200];
+  const ColourScale grey = greyScale(image, nullptr);
   WorldBox frame = tissue.empty() ? box : tissue;
   std::vector<Picture> rows;
   for (const SliceAxis axis : {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal}) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace explica::report {
 namespace {
@@ -62,13 +63,11 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
   const Camera camera =
       cameraTowards(placesOf(frames, look.focus), look.towards, look.up, drawn.width, drawn.height);
   std::vector<Picture> pictures;
+  std::optional<SurfaceScene> scene;
   for (const FilmFrame& frame : frames) {
     Picture whole(options.width, options.height);
-    pastePicture(
-        whole,
-        SurfaceScene(frame.mesh)
-            .render(camera, look.colours, look.filling, drawn, look.keys, Border::AroundFaces),
-        0, 0);
+    scene = SurfaceScene(frame.mesh, scene ? &*scene : nullptr);
+    pastePicture(whole, scene->render(camera, look.colours, look.filling, drawn, look.keys), 0, 0);
     drawProgress(whole, pictures.size(), frames.size(), letters);
     drawText(whole, frame.caption, Eigen::Vector2d(0.5 * options.width, options.height - letters),
              letters, {0.02F, 0.02F, 0.02F}, TextAnchor::Middle);

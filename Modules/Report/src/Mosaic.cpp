@@ -26,11 +26,7 @@ struct Extent {
 
 Extent extentOf(const WorldBox& tissue, const std::vector<MosaicOutline>& outlines) {
   WorldBox lines;
-  for (const MosaicOutline& outline : outlines) {
-    if (outline.mesh->vertexCount() == 0) continue;
-    lines.low = lines.low.cwiseMin(outline.mesh->positions.colwise().minCoeff().transpose());
-    lines.high = lines.high.cwiseMax(outline.mesh->positions.colwise().maxCoeff().transpose());
-  }
+  for (const MosaicOutline& outline : outlines) lines.add(*outline.mesh);
   if (lines.empty() && tissue.empty()) {
     throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
   }

@@ -5,8 +5,8 @@
 #include "Encoding.h"
 #include "Explica/Core/Html.h"
 #include "Explica/Core/Text.h"
+#include "Explica/Report/Canvas.h"
 #include "Explica/Report/Chart.h"
-#include "Explica/Report/Drawing.h"
 #include "PageParts.h"
 
 #include <algorithm>
@@ -84,6 +84,17 @@ std::string stepHtml(const ReportStep& step) {
   html += "</div>";
   if (!step.version.empty()) html += "<p class='quiet'>" + escapeHtml(step.version) + "</p>";
   return html + "</details>";
+}
+
+/// All steps in one fold, which is open where one of them is not done.
+std::string stepsHtml(const std::vector<ReportStep>& steps) {
+  const bool isDone =
+      std::ranges::all_of(steps, [](const auto& step) { return step.state == StepState::Done; });
+  std::string html = std::string("<section id='made'><h2>How it was made</h2><details") +
+                     (isDone ? "" : " open") + "><summary>Steps: " + std::to_string(steps.size()) +
+                     "</summary>";
+  for (const ReportStep& step : steps) html += stepHtml(step);
+  return html + "</details></section>";
 }
 
 /// JSON as it may stand in a script element.
@@ -258,8 +269,7 @@ std::string barHtml(const ColourScale& scale) {
   for (int s = 0; s <= kStops; ++s) {
     gradient += (s == 0 ? "" : ",") + hexText(colourAt(scale.map, static_cast<double>(s) / kStops));
   }
-  std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(scale.title) +
-                     (scale.unit.empty() ? "" : " [" + escapeHtml(unitText(scale.unit)) + "]") +
+  std::string html = "<div class='scale'><span class='scale-title'>" + escapeHtml(barTitle(scale)) +
                      "</span><div class='scale-bar' style='background:linear-gradient(to right," +
                      gradient + ")'></div><div class='scale-ticks'>";
   const double range = scale.high - scale.low;
@@ -288,7 +298,7 @@ std::string viewHtml(const std::string& name, const Picture& picture, const std:
          "</span></div>";
 }
 
-std::string viewsHtml(const ReportViews& views) {
+std::string viewsHtml(const ReportViews& views, bool isOpen) {
   std::string html = "<div class='views'>";
   for (const ReportViews::View& view : views.views) {
     html += viewHtml(view.title, view.picture, views.title + ", " + view.title);
@@ -296,7 +306,7 @@ std::string viewsHtml(const ReportViews& views) {
   html += "</div>";
   if (views.scale) html += barHtml(*views.scale);
   if (!views.legend.empty()) html += legendHtml(views.legend);
-  return figureHtml(views.id, views.title, views.caption, !views.detail, html);
+  return figureHtml(views.id, views.title, views.caption, isOpen, html);
 }
 
 using Outlines = std::vector<std::pair<std::string, std::string>>;
@@ -333,7 +343,7 @@ std::string keyHtml(const Outlines& outlines) {
   return html;
 }
 
-std::string mosaicHtml(const ReportMosaic& mosaic) {
+std::string mosaicHtml(const ReportMosaic& mosaic, bool isOpen) {
   std::string html = "<p class='quiet'>" + keyHtml(mosaic.slices.outlines);
   if (!mosaic.slices.outlines.empty()) {
     html += "<label><input type='checkbox' class='outlines' checked> outlines</label> &nbsp; ";
@@ -357,7 +367,7 @@ std::string mosaicHtml(const ReportMosaic& mosaic) {
     }
     html += "</div>";
   }
-  return figureHtml(mosaic.id, mosaic.title, mosaic.caption, !mosaic.detail, html);
+  return figureHtml(mosaic.id, mosaic.title, mosaic.caption, isOpen, html);
 }
 
 std::string glanceHtml(const ReportGlance& glance) {
@@ -387,29 +397,23 @@ std::string chartGridHtml(const Charts& charts) {
   return html + "</div>";
 }
 
-/// The charts of one group, its details folded away.
-std::string chartGroupHtml(const Charts& group) {
-  Charts shown, details;
-  for (const ReportChart* chart : group) (chart->detail ? details : shown).push_back(chart);
-  std::string html;
-  if (!group.front()->group.empty()) html += "<h3>" + escapeHtml(group.front()->group) + "</h3>";
-  if (!shown.empty()) html += chartGridHtml(shown);
-  if (details.empty()) return html;
-  return html + "<details><summary>" + std::to_string(details.size()) + " more</summary>" +
-         chartGridHtml(details) + "</details>";
+/// The charts of one group under its name, which folds them away.
+std::string chartGroupHtml(const Charts& group, bool isOpen) {
+  const std::string& name = group.front()->group;
+  return name.empty() ? chartGridHtml(group)
+                      : figureHtml("", name, "", isOpen, chartGridHtml(group));
 }
 
 std::string chartsHtml(const std::vector<ReportChart>& charts) {
   std::string html;
   Charts group;
-  for (const ReportChart& chart : charts) {
-    if (!group.empty() && group.front()->group != chart.group) {
-      html += chartGroupHtml(group);
-      group.clear();
-    }
-    group.push_back(&chart);
+  for (std::size_t n = 0; n < charts.size(); ++n) {
+    group.push_back(&charts[n]);
+    if (n + 1 < charts.size() && charts[n + 1].group == charts[n].group) continue;
+    html += chartGroupHtml(group, html.empty());
+    group.clear();
   }
-  return group.empty() ? html : html + chartGroupHtml(group);
+  return html;
 }
 
 std::string tableHtml(const ReportTable& table) {
@@ -435,6 +439,7 @@ std::string heading(const std::string& id, const std::string& words) {
   return "<h3 id='" + id + "'>" + words + "</h3>";
 }
 
+/// What is seen at the head, or in the slices to scroll through, is folded.
 std::string lookHtml(const ReportContent& content) {
   std::string html;
   if (!content.evolutions.empty()) html += kViewHtml;
@@ -444,17 +449,21 @@ std::string lookHtml(const ReportContent& content) {
         figureHtml(content.slices->id, content.slices->title, content.slices->caption, true,
                    "<p class='quiet'>" + keyHtml(content.slices->outlines) + "</p>" + kSlicesHtml);
   }
-  for (const ReportMosaic& mosaic : content.mosaics) html += mosaicHtml(mosaic);
-  if (!content.views.empty()) html += heading("surfaces", "Surfaces");
-  for (const ReportViews& views : content.views) html += viewsHtml(views);
-  std::string pictures;
-  for (const ReportPicture& picture : content.pictures) {
-    pictures += figureHtml(picture.id, picture.title, picture.caption, true,
-                           imageHtml(picture.picture, picture.title));
+  for (const ReportMosaic& mosaic : content.mosaics) {
+    html += mosaicHtml(mosaic, !content.slices && !mosaic.after);
   }
+  if (!content.views.empty()) html += heading("surfaces", "Surfaces");
+  for (const ReportViews& views : content.views) {
+    html += viewsHtml(views, std::ranges::find(content.glance, views.id, &ReportGlance::see) ==
+                                 content.glance.end());
+  }
+  const bool isDrawnAtHead =
+      std::ranges::any_of(content.drawings, [](const auto& drawn) { return !drawn.guide.empty(); });
+  std::string pictures;
   for (const ReportDrawing& drawing : content.drawings) {
     if (!drawing.guide.empty()) continue;
-    pictures += figureHtml(drawing.id, drawing.title, drawing.caption, true, drawingHtml(drawing));
+    pictures += figureHtml(drawing.id, drawing.title, drawing.caption, !isDrawnAtHead,
+                           drawingHtml(drawing));
   }
   if (!pictures.empty()) html += heading("pictures", "Pictures") + pictures;
   if (!content.charts.empty()) html += heading("charts", "Distributions and curves");
@@ -497,10 +506,9 @@ std::string reportPage(const ReportContent& content) {
   html +=
       escapeHtml(content.title) + "</title>\n<style>\n" + kPageStyle + "</style></head><body>\n";
   html += "<header><h1>" + escapeHtml(content.title) + "</h1></header>";
-  std::string made = "<section id='made'><h2>How it was made</h2>";
-  for (const ReportStep& step : content.steps) made += stepHtml(step);
   const std::string parts = headHtml(content) + findingsHtml(content.findings) +
-                            tablesHtml(content.tables) + lookHtml(content) + made + "</section>";
+                            tablesHtml(content.tables) + lookHtml(content) +
+                            stepsHtml(content.steps);
   html += contentsHtml(parts) + "<main>\n" + parts + "</main>\n";
   for (const Evolution& evolution : content.evolutions) {
     html += "<script type=\"application/json\" class=\"evolution\" data-title=\"" +

@@ -4,6 +4,7 @@
 
 #include "Encoding.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Report/Figure.h"
 
 #include <nlohmann/json.hpp>
 
@@ -25,11 +26,7 @@ struct Lattice {
 
 Lattice latticeOf(const Grid& grid, const std::vector<MosaicOutline>& outlines) {
   WorldBox box;
-  for (const MosaicOutline& outline : outlines) {
-    if (outline.mesh->vertexCount() == 0) continue;
-    box.low = box.low.cwiseMin(outline.mesh->positions.colwise().minCoeff().transpose());
-    box.high = box.high.cwiseMax(outline.mesh->positions.colwise().maxCoeff().transpose());
-  }
+  for (const MosaicOutline& outline : outlines) box.add(*outline.mesh);
   if (box.empty()) throw InvalidInput("outlines: none has vertices");
   const Vector extent = box.high - box.low + Vector::Constant(2 * kAround);
   Lattice lattice;

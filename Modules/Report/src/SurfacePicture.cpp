@@ -68,12 +68,12 @@ RTCRayHit rayFrom(const Eigen::Vector3f& origin, const Eigen::Vector3f& directio
   return query;
 }
 
-/// Cosine-weighted directions about +z: a spiral that covers the disc evenly, turned by `turn`.
-std::array<Eigen::Vector3f, kSkyRays> skyDirections(float turn) {
+/// Cosine-weighted directions about +z: a spiral that covers the disc evenly.
+std::array<Eigen::Vector3f, kSkyRays> skyDirections() {
   std::array<Eigen::Vector3f, kSkyRays> directions;
   for (int r = 0; r < kSkyRays; ++r) {
     const double radius = std::sqrt((r + 0.5) / kSkyRays);
-    const double angle = r * kPi * (3 - std::sqrt(5.0)) + 2 * kPi * turn;
+    const double angle = r * kPi * (3 - std::sqrt(5.0));
     directions[r] = Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle),
                                     std::sqrt(std::max(0.0, 1 - radius * radius)))
                         .cast<float>();
@@ -92,16 +92,17 @@ struct SurfaceScene::Implementation {
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> positions;
   Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> normals;
   Faces faces;
-  std::vector<float> openness;
+  std::vector<float> sky;       ///< share that each vertex sees, by its own rays
+  std::vector<float> openness;  ///< the same averaged over neighbours
   double diagonal = 1;
+  float skyReach = 0;  ///< of the rays into the sky, mm
   Device device;
   Scene scene;
 
-  void build(const TriangleMesh& mesh);
-  /// True if a point of a face lies within `reach` of where two of its corners' keys meet.
-  [[nodiscard]] bool onBorder(Eigen::Index face, const std::array<float, 3>& weight, int nearest,
-                              const std::vector<std::int32_t>& keys, double reach) const;
-  void measureOpenness(const TriangleMesh& mesh);
+  void build(const TriangleMesh& mesh, const Implementation* before);
+  /// Of each vertex whether what has moved may lie within `skyReach`, now or before.
+  [[nodiscard]] std::vector<std::uint8_t> nearMoved(const Implementation& before) const;
+  void measureOpenness(const Implementation* before);
   struct Tint;
   /// Of each face a bit for each edge, opposite to its first, second and third corner: whether it
   /// is the only face at that edge without a corner of key 0, or beside that face.
@@ -116,25 +117,26 @@ struct SurfaceScene::Implementation::Tint {
   const std::vector<Colour>& colours;  ///< one a vertex, or none
   Filling filling;
   const std::vector<std::int32_t>& keys;  ///< one a vertex, or none
-  Border border;
-  std::vector<std::uint8_t> rim;  ///< of Border::AroundFaces, see rimOf()
-  double reach = 0;               ///< mm, half the line
+  std::vector<std::uint8_t> rim;          ///< see rimOf()
+  double reach = 0;                       ///< mm, half the line
 
   [[nodiscard]] Colour at(const Implementation& surface, Eigen::Index face,
                           const std::array<float, 3>& weight) const;
 
  private:
   [[nodiscard]] bool onLine(const Implementation& surface, Eigen::Index face,
-                            const std::array<float, 3>& weight, int nearest) const;
+                            const std::array<float, 3>& weight) const;
 };
 
-void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
+void SurfaceScene::Implementation::build(const TriangleMesh& mesh, const Implementation* before) {
   if (mesh.faceCount() == 0) throw InvalidInput("surface: no faces to draw");
   if (!mesh.positions.allFinite()) throw InvalidInput("surface: a vertex's position is not finite");
   positions = mesh.positions.cast<float>();
   normals = geometry::vertexNormals(mesh).cast<float>();
   faces = mesh.faces;
+  if (before && before->faces != faces) before = nullptr;
   diagonal = (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
+  skyReach = before ? before->skyReach : static_cast<float>(kSkyReach * diagonal);
 
   device.reset(rtcNewDevice(nullptr));
   if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -159,20 +161,7 @@ void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
   rtcAttachGeometry(scene.get(), geometry);
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene.get());
-  measureOpenness(mesh);
-}
-
-bool SurfaceScene::Implementation::onBorder(Eigen::Index face, const std::array<float, 3>& weight,
-                                            int nearest, const std::vector<std::int32_t>& keys,
-                                            double reach) const {
-  const std::int32_t own = faces(face, nearest);
-  for (int k = 0; k < 3; ++k) {
-    const std::int32_t other = faces(face, k);
-    if (keys[other] == keys[own]) continue;
-    const double edge = (positions.row(own) - positions.row(other)).norm();
-    if (0.5 * (weight[nearest] - weight[k]) * edge < reach) return true;
-  }
-  return false;
+  measureOpenness(before);
 }
 
 std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
@@ -187,6 +176,7 @@ std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
   }
   std::vector<std::uint8_t> rim(static_cast<std::size_t>(faces.rows()), 0);
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    if (keys[faces(f, 0)] == 0 && keys[faces(f, 1)] == 0) continue;  // no edge within
     for (int k = 0; k < 3; ++k) {
       const auto found = count.find(edgeOf(f, k));
       if (found != count.end() && found->second == 1) rim[f] |= static_cast<std::uint8_t>(1 << k);
@@ -196,11 +186,7 @@ std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
 }
 
 bool SurfaceScene::Implementation::Tint::onLine(const Implementation& surface, Eigen::Index face,
-                                                const std::array<float, 3>& weight,
-                                                int nearest) const {
-  if (border == Border::BetweenVertices) {
-    return surface.onBorder(face, weight, nearest, keys, reach);
-  }
+                                                const std::array<float, 3>& weight) const {
   if (rim[face] == 0) return false;
   std::array<Eigen::Vector3f, 3> corner;
   for (int k = 0; k < 3; ++k) corner[k] = surface.positions.row(surface.faces(face, k)).transpose();
@@ -215,8 +201,7 @@ bool SurfaceScene::Implementation::Tint::onLine(const Implementation& surface, E
 Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eigen::Index face,
                                               const std::array<float, 3>& weight) const {
   constexpr Colour kPlain = {0.60f, 0.58f, 0.56f};
-  const bool parts = !keys.empty() && border == Border::AroundFaces;
-  const bool outside = parts && !surface.isWithin(face, keys);
+  const bool outside = !keys.empty() && !surface.isWithin(face, keys);
   const auto nearest = static_cast<int>(std::ranges::max_element(weight) - weight.begin());
   Colour base = kPlain;
   if (!colours.empty() && filling == Filling::Discrete && !outside) {
@@ -234,61 +219,99 @@ Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eig
     }
     for (float& c : base) c /= sum;
   }
-  if (!keys.empty() && onLine(surface, face, weight, nearest)) {
+  if (!keys.empty() && onLine(surface, face, weight)) {
     for (float& c : base) c *= kBorderShade;
   }
   return base;
 }
 
-void SurfaceScene::Implementation::measureOpenness(const TriangleMesh& mesh) {
+std::vector<std::uint8_t> SurfaceScene::Implementation::nearMoved(
+    const Implementation& before) const {
+  constexpr int kFar = 6;  // cells of a grid along the reach
+  const Eigen::RowVector3f low =
+      positions.colwise().minCoeff().cwiseMin(before.positions.colwise().minCoeff());
+  const Eigen::RowVector3f high =
+      positions.colwise().maxCoeff().cwiseMax(before.positions.colwise().maxCoeff());
+  const auto cellOf = [&](const Eigen::RowVector3f& p) -> Eigen::Array3i {
+    return ((p - low) * (kFar / skyReach)).array().cast<int>().transpose() + kFar + 1;
+  };
+  const Eigen::Array3i size = cellOf(high) + kFar + 2;
+  const auto index = [&](const Eigen::Array3i& c) {
+    return (static_cast<std::size_t>(c.z()) * size.y() + c.y()) * size.x() + c.x();
+  };
+  std::vector<std::uint8_t> holds(index(size), 0), isNear(index(size), 0);
+  const auto mark = [&](const Eigen::Array3i& cell) {
+    if (std::exchange(holds[index(cell)], 1) != 0) return;
+    constexpr int kSide = 2 * kFar + 3;
+    for (int n = 0; n < kSide * kSide * kSide; ++n) {
+      const Eigen::Array3i d =
+          Eigen::Array3i(n % kSide, n / kSide % kSide, n / kSide / kSide) - kFar - 1;
+      if ((d.abs() - 1).max(0).square().sum() <= kFar * kFar) isNear[index(cell + d)] = 1;
+    }
+  };
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (positions.row(v) == before.positions.row(v)) continue;
+    mark(cellOf(positions.row(v)));
+    mark(cellOf(before.positions.row(v)));
+  }
+  std::vector<std::uint8_t> ofVertex(static_cast<std::size_t>(positions.rows()));
+  for (std::size_t v = 0; v < ofVertex.size(); ++v) {
+    ofVertex[v] = isNear[index(cellOf(positions.row(static_cast<Eigen::Index>(v))))];
+  }
+  return ofVertex;
+}
+
+void SurfaceScene::Implementation::measureOpenness(const Implementation* before) {
   const auto count = static_cast<std::size_t>(positions.rows());
-  std::vector<float> seen(count, 1.0f);
-  const auto reach = static_cast<float>(kSkyReach * diagonal);
+  sky = before ? before->sky : std::vector<float>(count, 1.0f);
   const auto lift = static_cast<float>(1e-4 * diagonal);
+  const std::vector<std::uint8_t> isNew =
+      before ? nearMoved(*before) : std::vector<std::uint8_t>(count, 1);
+  const auto directions = skyDirections();
   parallelForBlocks(count, 2048, [&](std::size_t begin, std::size_t end) {
     const FlushDenormals flush;
     for (std::size_t v = begin; v < end; ++v) {
       const Eigen::Vector3f n = normals.row(v).transpose();
-      if (n.squaredNorm() < 0.5f) continue;
-      const Eigen::Vector3f a = perpendicular(n);
-      const Eigen::Vector3f b = n.cross(a);
+      if (isNew[v] == 0 || n.squaredNorm() < 0.5f) continue;
       // A different turn at each vertex; averaging over neighbours then sees many directions.
-      const float turn = static_cast<float>((v * 2654435761u) & 0xffffu) / 65536.0f;
+      const auto turn = static_cast<float>(2 * kPi / 65536 * ((v * 2654435761u) & 0xffffu));
+      const Eigen::Vector3f x = perpendicular(n), y = n.cross(x);
+      const Eigen::Vector3f a = std::cos(turn) * x + std::sin(turn) * y, b = n.cross(a);
       const Eigen::Vector3f origin = positions.row(v).transpose() + lift * n;
       float open = 0;
-      for (const Eigen::Vector3f& d : skyDirections(turn)) {
+      for (const Eigen::Vector3f& d : directions) {
         const Eigen::Vector3f direction = d.x() * a + d.y() * b + d.z() * n;
-        RTCRayHit query = rayFrom(origin, direction, 0, reach);
+        RTCRayHit query = rayFrom(origin, direction, 0, skyReach);
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene.get(), &context, &query);
         // A wall far away hides less of the sky's light than one close by.
         open += query.hit.geomID == RTC_INVALID_GEOMETRY_ID
                     ? 1.0f
-                    : std::min(1.0f, query.ray.tfar / reach);
+                    : std::min(1.0f, query.ray.tfar / skyReach);
       }
-      seen[v] = open / kSkyRays;
+      sky[v] = open / kSkyRays;
     }
   });
   // Averages over neighbours, over face corners so that non-manifold meshes can be drawn, too.
+  openness = sky;
   for (int pass = 0; pass < kSkySmoothing; ++pass) {
-    std::vector<float> sum(seen);
+    std::vector<float> sum(openness);
     std::vector<float> weight(count, 1.0f);
-    for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
       for (int k = 0; k < 3; ++k) {
-        const std::int32_t v = mesh.faces(f, k);
-        sum[v] += seen[mesh.faces(f, (k + 1) % 3)];
+        const std::int32_t v = faces(f, k);
+        sum[v] += openness[faces(f, (k + 1) % 3)];
         weight[v] += 1;
       }
     }
-    for (std::size_t v = 0; v < count; ++v) seen[v] = sum[v] / weight[v];
+    for (std::size_t v = 0; v < count; ++v) openness[v] = sum[v] / weight[v];
   }
-  openness = std::move(seen);
 }
 
-SurfaceScene::SurfaceScene(const TriangleMesh& mesh)
+SurfaceScene::SurfaceScene(const TriangleMesh& mesh, const SurfaceScene* before)
     : implementation_(std::make_unique<Implementation>()) {
-  implementation_->build(mesh);
+  implementation_->build(mesh, before ? before->implementation_.get() : nullptr);
 }
 SurfaceScene::~SurfaceScene() = default;
 SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
@@ -300,7 +323,7 @@ const std::vector<float>& SurfaceScene::openness() const {
 
 Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& colours,
                              Filling filling, const SurfacePictureOptions& options,
-                             const std::vector<std::int32_t>& keys, Border border) const {
+                             const std::vector<std::int32_t>& keys) const {
   const Implementation& self = *implementation_;
   if (!colours.empty() && colours.size() != static_cast<std::size_t>(self.positions.rows())) {
     throw InvalidInput("colours: found " + std::to_string(colours.size()) +
@@ -325,12 +348,8 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
       (0.5f * static_cast<float>(options.height * options.samples) * step) * up -
       (0.5f * static_cast<float>(options.width * options.samples) * step) * right;
   const auto occlusion = static_cast<float>(options.occlusion);
-  const bool around = !keys.empty() && border == Border::AroundFaces;
-  const Implementation::Tint paint{colours,
-                                   filling,
-                                   keys,
-                                   border,
-                                   around ? self.rimOf(keys) : std::vector<std::uint8_t>(),
+  const Implementation::Tint paint{colours, filling, keys,
+                                   keys.empty() ? std::vector<std::uint8_t>() : self.rimOf(keys),
                                    kBorder * camera.halfHeight / options.height};
 
   Picture picture(options.width, options.height);
@@ -343,16 +362,24 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     const int x0 = static_cast<int>(tile % columns) * kTile;
     const int y0 = static_cast<int>(tile / columns) * kTile;
+    const int x1 = std::min(x0 + kTile, options.width), ofPixel = options.samples * options.samples;
+    const RTCRayHit blank = rayFrom(corner, towards, 0, 2 * back);
+    std::vector<RTCRayHit> queries;  // of a row, which are followed together
     for (int y = y0; y < std::min(y0 + kTile, options.height); ++y) {
-      for (int x = x0; x < std::min(x0 + kTile, options.width); ++x) {
+      queries.assign(static_cast<std::size_t>(x1 - x0) * ofPixel, blank);
+      for (int q = 0; q < (x1 - x0) * ofPixel; ++q) {
+        const int x = x0 + q / ofPixel, s = q % ofPixel;
+        const float px = static_cast<float>(x * options.samples + s % options.samples) + 0.5f;
+        const float py = static_cast<float>(y * options.samples + s / options.samples) + 0.5f;
+        const Eigen::Vector3f from = corner + px * step * right - py * step * up;
+        std::copy(from.data(), from.data() + 3, &queries[q].ray.org_x);
+      }
+      rtcIntersect1M(self.scene.get(), &context, queries.data(),
+                     static_cast<unsigned>(queries.size()), sizeof(RTCRayHit));
+      for (int x = x0; x < x1; ++x) {
         Colour sum = {0, 0, 0};
-        for (int s = 0; s < options.samples * options.samples; ++s) {
-          const int column = s % options.samples, row = s / options.samples;
-          const float px = static_cast<float>(x * options.samples + column) + 0.5f;
-          const float py = static_cast<float>(y * options.samples + row) + 0.5f;
-          RTCRayHit query =
-              rayFrom(corner + px * step * right - py * step * up, towards, 0, 2 * back);
-          rtcIntersect1(self.scene.get(), &context, &query);
+        for (int s = 0; s < ofPixel; ++s) {
+          const RTCRayHit& query = queries[(x - x0) * ofPixel + s];
           if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
             for (float& c : sum) c += 1;
             continue;
@@ -380,9 +407,9 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
             sum[c] += std::min(1.0f, tint * base[c] * lit * dark);
           }
         }
-        const auto count = static_cast<float>(options.samples * options.samples);
+        if (sum[0] == ofPixel && sum[1] == ofPixel && sum[2] == ofPixel) continue;  // white paper
         std::uint8_t* pixel = picture.pixel(x, y);
-        for (int c = 0; c < 3; ++c) pixel[c] = encodeSrgb(sum[c] / count);
+        for (int c = 0; c < 3; ++c) pixel[c] = encodeSrgb(sum[c] / static_cast<float>(ofPixel));
       }
     }
   });

@@ -228,7 +228,7 @@ TEST(ReportPage, NamesNothingToFetch) {
   ReportContent content;
   content.title = "page";
   content.evolutions.push_back(movingSphere());
-  content.pictures.push_back({"white", "White", "white square", Picture(8, 8)});
+  content.views.push_back({"white", "White", "white square", {{"left", Picture(8, 8)}}, {}, {}});
   const std::string page = reportPage(content);
   for (const char* fetching :
        {" src='http", " src=\"http", "<link rel=\"stylesheet", "import(", "@import", "url(http"}) {
@@ -282,21 +282,30 @@ TEST(ReportPage, OffersEveryPatchAndTheStatesOfAMosaic) {
       << "one copy of the library for all patches";
 }
 
-TEST(ReportPage, GathersChartsUnderHeadingsAndFoldsDetailsAway) {
+TEST(ReportPage, FoldsWhatTheHeadShowsAndStepsThatAreDone) {
   ReportContent content;
-  content.charts = {{"", "<svg>1</svg>", "Left", false},
-                    {"", "<svg>2</svg>", "Left", true},
-                    {"", "<svg>3</svg>", "Right", false}};
+  content.glance.push_back({"seen", "Thickness", "Right: even."});
+  for (const char* id : {"seen", "other"}) content.views.push_back({id, id, "", {}, {}, {}});
+  content.steps.emplace_back();
+  EXPECT_NE(reportPage(content).find("<figure id='seen'><details>"), std::string::npos);
+  EXPECT_NE(reportPage(content).find("<figure id='other'><details open>"), std::string::npos);
+  EXPECT_NE(reportPage(content).find("<details><summary>Steps: 1<"), std::string::npos);
+  content.steps.front().state = StepState::Failed;
+  EXPECT_NE(reportPage(content).find("<details open><summary>Steps: 1<"), std::string::npos);
+}
+
+TEST(ReportPage, GathersChartsUnderHeadingsAndOpensTheFirst) {
+  ReportContent content;
+  content.charts = {
+      {"", "<svg>1</svg>", "Left"}, {"", "<svg>2</svg>", "Left"}, {"", "<svg>3</svg>", "Right"}};
   const std::string page = reportPage(content);
-  const std::size_t left = page.find("<h3>Left</h3>"), right = page.find("<h3>Right</h3>");
-  const std::size_t folded = page.find("<summary>1 more</summary>");
+  const std::size_t left = page.find("<details open><summary><b>Left."),
+                    right = page.find("<details><summary><b>Right.");
   ASSERT_NE(right, std::string::npos);
   EXPECT_LT(left, page.find("<svg>1</svg>"));
-  EXPECT_LT(page.find("<svg>1</svg>"), folded);
-  EXPECT_LT(folded, page.find("<svg>2</svg>"));
   EXPECT_LT(page.find("<svg>2</svg>"), right);
   EXPECT_LT(right, page.find("<svg>3</svg>"));
-  EXPECT_EQ(page.find("<h3>Left</h3>", left + 1), std::string::npos);
+  EXPECT_EQ(page.find("<b>Left.", page.find("<svg>1</svg>")), std::string::npos);
 }
 
 TEST(Charts, SayWhenThereIsNothingToShow) {

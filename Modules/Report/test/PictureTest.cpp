@@ -328,9 +328,9 @@ TEST(FlatFigure, DirectionsStandInTheCorner) {
   paint.values = Eigen::VectorXd::Zero(plane.vertexCount());
   paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
   FlatMarks marks;
-  const Picture plain = flatPanel(plane, paint, marks, 450);
+  const Picture plain = flatPanel(plane, paint, marks, 450).picture();
   marks.directions.emplace_back(Eigen::Vector2d(0, 1), "A");
-  const Picture picture = flatPanel(plane, paint, marks, 450);
+  const Picture picture = flatPanel(plane, paint, marks, 450).picture();
   const auto changed = [&](int fromX, int toX, int fromY, int toY) {
     int count = 0;
     for (int y = fromY; y < toY; ++y) {
@@ -343,7 +343,7 @@ TEST(FlatFigure, DirectionsStandInTheCorner) {
   EXPECT_EQ(changed(right - 80, right, 415, 450), 0) << "and nothing below its foot";
   EXPECT_EQ(changed(0, right - 80, 0, 450), 0);
   marks.names.emplace_back(Point(39, 3, 0), "a name");
-  const Picture named = flatPanel(plane, paint, marks, 450);
+  const Picture named = flatPanel(plane, paint, marks, 450).picture();
   EXPECT_NE(named.rgb, picture.rgb);
   for (int y = 380; y < 450; ++y) {
     for (int x = right - 70; x < right; ++x) {
@@ -359,9 +359,9 @@ TEST(FlatFigure, ANameWithoutRoomIsLeftOut) {
   paint.scale = {ColourMap::Grey, -1, 0.2, "x", ""};
   FlatMarks marks;
   for (int n = 0; n < 7; ++n) marks.names.emplace_back(Point(20, 20, 0), "a name");
-  const Picture seven = flatPanel(plane, paint, marks, 450);
+  const Picture seven = flatPanel(plane, paint, marks, 450).picture();
   marks.names.emplace_back(Point(20, 20, 0), "another");
-  EXPECT_EQ(flatPanel(plane, paint, marks, 450).rgb, seven.rgb);
+  EXPECT_EQ(flatPanel(plane, paint, marks, 450).picture().rgb, seven.rgb);
 }
 
 TEST(Ticks, AreRoundAndWithinTheRange) {

@@ -45,8 +45,7 @@ TEST(SurfacePicture, ARegionsColourEndsAtTheEdgesOfItsFaces) {
       cameraTowards(mesh, Vector(-1, 0, 0), Vector(0, 0, 1), options.width, options.height);
   const SurfaceScene scene(mesh);
   for (const Filling filling : {Filling::Smooth, Filling::Discrete}) {
-    const Picture picture =
-        scene.render(camera, colours, filling, options, keys, Border::AroundFaces);
+    const Picture picture = scene.render(camera, colours, filling, options, keys);
     int red = 0, blue = 0, mixed = 0;
     for (int x = 0; x < options.width; ++x) {
       const std::uint8_t* p = picture.pixel(x, options.height / 2 + 1);
@@ -117,6 +116,26 @@ TEST(SurfacePicture, FoldsAreDarkerThanCrowns) {
     }
   }
   EXPECT_LT(low / lows + 0.01, high / highs);
+}
+
+TEST(SurfacePicture, MeasuresOpennessAnewOnlyNearWhatHasMoved) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(5, 50, 0.25, 6);
+  const SurfaceScene first(folded);
+  TriangleMesh moved = folded;
+  for (Eigen::Index v = 0; v < moved.vertexCount(); ++v) {
+    if (moved.positions.row(v).minCoeff() > 15) moved.positions.row(v) *= 0.8;
+  }
+  const SurfaceScene next(moved, &first), fresh(moved);
+  EXPECT_EQ(next.openness(), fresh.openness()) << "the rays are as long, and nothing is missed";
+  EXPECT_NE(next.openness(), first.openness());
+  moved.positions.row(0) *= 4;  // the rays of a scene by itself are longer then
+  const SurfaceScene far(moved, &first);
+  int carried = 0, measured = 0;
+  for (Eigen::Index v = 0; v < moved.vertexCount(); ++v) {
+    if (moved.positions.row(v) != folded.positions.row(v)) continue;
+    (far.openness()[v] == first.openness()[v] ? carried : measured) += 1;
+  }
+  EXPECT_GT(carried, measured);
 }
 
 TEST(SurfacePicture, DoesNotDependOnThreads) {

@@ -279,11 +279,6 @@ struct MultipoleTree::State {
   ClusterTree fixedTree;
   mutable Pool<Workspace> workspaces;
 
-  /// What `nearRatio` adds to the radius of the largest of some targets, in units.
-  [[nodiscard]] float marginOf(const ClusterTree::Node& targets) const {
-    return static_cast<float>((options.nearRatio - 1) * targets.largestFace / unit);
-  }
-
   void addNear(const kernels::TargetLeaf& target, const ClusterTree::Node& leaf,
                const kernels::NearHit& hit, int which, const ClusterTree& tree,
                NearPairs& nearPairs) const;

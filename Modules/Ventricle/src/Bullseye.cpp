@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Canvas.h"
 #include "Explica/Core/Text.h"
+#include "Explica/Report/Canvas.h"
 #include "Explica/Report/ColourMap.h"
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
@@ -14,12 +14,26 @@ namespace explica::ventricle {
 
 namespace {
 
+using report::Canvas;
 using report::Colour;
+using report::kGrey;
+using report::kInk;
+using report::kWhite;
+using report::Point2;
 using report::TextAnchor;
 
 constexpr double kPanel = 440, kHeight = 590;                                   // of one bull's-eye
 constexpr double kRadius = 150, kMiddleX = 190, kMiddleY = 270;                 // pixels
 constexpr double kBarX = 385, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
+
+constexpr Colour kPale = {0.78F, 0.79F, 0.80F};  // what is not known
+
+/// Black or white, whichever is read better on a colour.
+Colour inkOn(const Colour& ground) {
+  // Where black and white have the same contrast, (Y + 0.05)^2 = 1.05 * 0.05.
+  const double light = 0.2126 * ground[0] + 0.7152 * ground[1] + 0.0722 * ground[2];
+  return light > 0.18 ? kInk : kWhite;
+}
 
 /// What a bull's-eye shows.
 struct Panel {
@@ -100,25 +114,14 @@ void drawNames(Canvas& canvas, const Point2& corner, bool oriented) {
 }
 
 void drawBar(Canvas& canvas, const Point2& corner, const Panel& panel) {
-  constexpr int kSteps = 56;
   const double low = panel.scale.low, high = panel.scale.high;
   const auto heightOf = [&](double value) {
     return kBarTop + kBarHeight * (1 - (value - low) / (high - low));
   };
-  for (int q = 0; q < kSteps; ++q) {
-    const double value = low + (high - low) * (q + 0.5) / kSteps;
-    canvas.rectangle(corner + Point2(kBarX, kBarTop + kBarHeight * (kSteps - 1 - q) / kSteps),
-                     {kBarWidth, kBarHeight / kSteps + 0.6}, panel.scale(value));
-  }
-  for (const double value : report::roundTicks(low, high)) {
-    const double y = heightOf(value);
-    canvas.stroke(
-        {corner + Point2(kBarX + kBarWidth, y), corner + Point2(kBarX + kBarWidth + 4, y)}, kInk,
-        1);
-    canvas.text(corner + Point2(kBarX + kBarWidth + 8, y + 3.5),
-                report::tickText(value, high - low), 8.5, kInk, TextAnchor::Left);
-  }
-  canvas.text(corner + Point2(kBarX + kBarWidth / 2, kBarTop - 12), panel.unit, 8, kInk);
+  report::ColourScale scale = panel.scale;
+  scale.title = panel.unit;
+  scale.unit.clear();
+  drawColourBar(canvas, scale, corner + Point2(kBarX, kBarTop), {kBarWidth, kBarHeight}, 8.5);
   if (!(panel.normalLow < high && panel.normalHigh > low)) return;
   const double top = heightOf(std::min(high, panel.normalHigh));
   const double bottom = heightOf(std::max(low, panel.normalLow));

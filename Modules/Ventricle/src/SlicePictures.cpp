@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Canvas.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Correspondence/Trajectory.h"
+#include "Explica/Report/Canvas.h"
 #include "Explica/Report/Mosaic.h"
 #include "Explica/Ventricle/Pictures.h"
 
@@ -16,7 +16,11 @@ namespace explica::ventricle {
 
 namespace {
 
+using report::Canvas;
 using report::Colour;
+using report::kGrey;
+using report::kInk;
+using report::Point2;
 
 constexpr double kTile = 230, kCaption = 40, kHead = 84;  // pixels
 // Tiles a row, tiles, lines a slice.

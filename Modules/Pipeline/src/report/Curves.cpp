@@ -28,7 +28,7 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
   const std::vector<double>* iteration = table.column("iteration");
   if (iteration == nullptr) return;
   const auto chart = [&](const std::string& title, const std::string& unit,
-                         const std::vector<std::string>& names, bool logarithmic, bool detail) {
+                         const std::vector<std::string>& names, bool logarithmic) {
     std::vector<report::Series> series;
     for (const std::string& name : names) {
       if (const std::vector<double>* values = table.column(name))
@@ -39,17 +39,17 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
         {"",
          report::curvesSvg(series,
                            {title, "iteration", unit, logarithmic, endOf(step, *iteration)}),
-         titleOf(step.name), detail});
+         titleOf(step.name)});
   };
-  chart("Visibility", "mean over the region", {"visibility", "seen"}, false, false);
-  chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true, false);
+  chart("Visibility", "mean over the region", {"visibility", "seen"}, false);
+  chart("Distortion", "share", {"area_error_mean", "edge_strain_mean"}, true);
   for (const std::string& name : table.names) {
     if (!name.starts_with("energy")) continue;
     const std::vector<double>& values = *table.column(name);
     bool any = false;
     for (const double v : values) any = any || v != 0;
     // The start has no energies yet: its zeros would hide the curve.
-    if (any) chart(inWords(name), "mm\u00b2", {name}, true, true);
+    if (any) chart(inWords(name), "mm\u00b2", {name}, true);
   }
 }
 
@@ -71,6 +71,7 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
   };
   const auto maps = io::readVertexMaps(step.folder / file);
   for (const io::VertexMap& map : maps) {
+    if (map.name.find("before") != std::string::npos) continue;  // it lies behind what is after
     const std::string name = mapWords(map.name);
     report::ChartText words{inWords(name), "", "share of vertices"};
     // What was before lies behind what is after.
@@ -86,9 +87,8 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
     const std::string axis =
         map.unit.empty() ? name : name + " [" + report::unitText(map.unit) + "]";
     words.xTitle = axis;
-    results.content().charts.push_back({first ? id : "", report::histogramSvg(inside(map), words),
-                                        titleOf(step.name),
-                                        map.name.find("before") != std::string::npos});
+    results.content().charts.push_back(
+        {first ? id : "", report::histogramSvg(inside(map), words), titleOf(step.name)});
     first = false;
   }
 }

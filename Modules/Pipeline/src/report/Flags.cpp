@@ -165,7 +165,6 @@ void dropIdleLinks(report::ReportContent& content) {
   if (content.slices) places.insert(content.slices->id);
   for (const auto& shown : content.mosaics) places.insert(shown.id);
   for (const auto& shown : content.views) places.insert(shown.id);
-  for (const auto& shown : content.pictures) places.insert(shown.id);
   for (const auto& shown : content.drawings) places.insert(shown.id);
   for (const auto& shown : content.charts) places.insert(shown.id);
   for (const auto& shown : content.tables) places.insert(shown.id);

@@ -316,13 +316,9 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
       "head of the page.",
       middle.outlines, report::sliceStackJson(volume, outlines, places, mosaic)};
   if (brain.faceCount() > 0) outlines.push_back({&brain, "brain", "#5ac8fa"});
-  results.content().mosaics.push_back({"",
-                                       "The same for print",
+  results.content().mosaics.push_back({"", "The same for print",
                                        "The outlines must follow the borders of the grey ribbon.",
-                                       report::makeMosaic(volume, outlines, mosaic),
-                                       {},
-                                       {},
-                                       true});
+                                       report::makeMosaic(volume, outlines, mosaic)});
   if (places.empty()) return;
   constexpr double kWidth = 36;  // mm
   report::MosaicOptions close = mosaic;

@@ -60,7 +60,7 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
     if (most == 0) return;
     auto slices = report::makeMosaics(image, after, small);
     results.content().mosaics.push_back(
-        {"", title, caption, std::move(slices[0]), std::move(slices[1]), states, true});
+        {"", title, caption, std::move(slices[0]), std::move(slices[1]), states});
   };
   compare("bias.nii.gz", "Bias field",
           "The image as it came, and with the estimated field divided out: one tissue must be "

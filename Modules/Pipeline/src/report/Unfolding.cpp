@@ -240,8 +240,7 @@ class PatchPictures {
                  (view == &front_ ? ", from the viewpoint" : ", from the side"),
              (folded ? sceneBefore_ : sceneAfter_)
                  .render(cameraFor(folded, *view, size), colours,
-                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim,
-                         report::Border::AroundFaces)});
+                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim)});
       }
     }
     if (smooth) views.scale = painted.paint.scale;

@@ -44,6 +44,7 @@ async function unpackIntegers(packed) {
   };
   window.addEventListener('hashchange', unfold);
   unfold();
+  window.addEventListener('beforeprint', () => { for (const fold of document.querySelectorAll('figure > details')) fold.open = true; });
   for (const box of document.querySelectorAll('input.outlines')) {
     box.addEventListener('change', () => box.closest('figure').classList.toggle('no-outlines', !box.checked));
   }
@@ -119,11 +120,7 @@ function boxOf(at, filter = () => true) {
   }
   return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
 }
-function joined(boxes) {
-  const low = [0, 1, 2].map((c) => Math.min(...boxes.map((box) => box.low[c])));
-  const high = [0, 1, 2].map((c) => Math.max(...boxes.map((box) => box.high[c])));
-  return { low, high, middle: low.map((x, c) => 0.5 * (x + high[c])), size: Math.hypot(...low.map((x, c) => high[c] - x)) };
-}
+const joined = (boxes) => boxOf(boxes.flatMap((box) => [...box.low, ...box.high]));
 // Of all vertices, or of those of a mask in the normals given, from all faces about them.
 function normalsOf(at, faces, normals = new Float32Array(at.length), mask = null) {
   if (mask) for (let v = 0; v < mask.length; ++v) if (mask[v]) normals.fill(0, 3 * v, 3 * v + 3);
@@ -143,6 +140,20 @@ function normalsOf(at, faces, normals = new Float32Array(at.length), mask = null
     for (let c = 0; c < 3; ++c) normals[v + c] /= length;
   }
   return normals;
+}
+// Fewer faces of the same vertices: each vertex joins a neighbour that stands for those about it.
+function fewer(faces, count) {
+  const leader = new Int32Array(count).fill(-1), kept = [];
+  for (let f = 0; f < faces.length; f += 3) {
+    const corners = [faces[f], faces[f + 1], faces[f + 2]];
+    const own = corners.find((v) => leader[v] === v) ?? (corners.every((v) => leader[v] < 0) ? corners[0] : undefined);
+    if (own !== undefined) for (const v of corners) if (leader[v] < 0) leader[v] = own;
+  }
+  for (let f = 0; f < faces.length; f += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => (leader[faces[f + k]] < 0 ? faces[f + k] : leader[faces[f + k]]));
+    if (a !== b && b !== c && c !== a) kept.push(a, b, c);
+  }
+  return Uint32Array.from(kept);
 }
 const openShapes = ['inflated', 'sphere', 'flat'];
 // Shapes that are no anatomy get a place of their own: a sphere has the area of the first shape, the flat map is that
@@ -336,8 +347,6 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
       rim.needsUpdate = true;
       part.mesh.visible = isShown(part);
       part.rim.visible = isShown(part);
-      part.geometry.setIndex(alone.checked && part.partFaces.length > 0 ? part.index.alone
-        : part.index.flat && place > names.length - 2 ? part.index.flat : part.index.all);
     }
     mark.visible = marked !== null && isShown(marked.part);
     if (marked) for (let c = 0; c < 3; ++c) mark.geometry.attributes.position.array[c] = marked.part.at[3 * marked.vertex + c];
@@ -449,14 +458,29 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
     const direction = part.viewpoint ? new THREE.Vector3(...part.viewpoint).sub(new THREE.Vector3(...box.middle)) : new THREE.Vector3(-1, 0, 0);
     lookAt(box, direction);
   }
-  let pending = false;
+  // Where a picture takes too long, less is drawn while the view moves: `less` times fewer faces, and a quarter of the pixels.
+  const longest = 40, mostLess = 3;  // ms
+  let pending = false, less = 0, isMoving = false, stands = null;
+  function move() {
+    clearTimeout(stands);
+    isMoving = true;
+    draw();
+  }
+  function indexOf(part) {
+    let index = alone.checked && part.partFaces.length > 0 ? part.index.alone
+      : part.index.flat && place > names.length - 2 ? part.index.flat : part.index.all;
+    for (let n = 0; isMoving && n < less; ++n) index = index.fewer || (index.fewer = attribute(fewer(index.array, part.count), 1));
+    return index;
+  }
   function draw() {
     if (pending) return;
     pending = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((time) => {
       pending = false;
       const width = canvas.clientWidth, height = canvas.clientHeight;
-      const ratio = Math.min(window.devicePixelRatio || 1, 2);
+      const isLess = isMoving && less > 0;
+      const ratio = Math.min(window.devicePixelRatio || 1, 2) * (isLess ? 0.5 : 1);
+      for (const part of scene) part.geometry.setIndex(indexOf(part));
       if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
         renderer.setPixelRatio(ratio);
         renderer.setSize(width, height, false);
@@ -471,20 +495,26 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
       camera.updateMatrixWorld();
       renderer.render(stage, camera);
       canvas.dataset.drawn = String(Number(canvas.dataset.drawn || 0) + 1);
+      canvas.dataset.less = isLess ? String(less) : '';
+      if (isMoving) requestAnimationFrame((next) => {
+        if (next - time > longest) less = Math.min(less + 1, mostLess);
+        clearTimeout(stands);
+        stands = setTimeout(() => { isMoving = false; draw(); }, 200);
+      });
     });
   }
   function rotate(dx, dy) {
     eye.turn.multiply(new THREE.Quaternion().setFromEuler(new THREE.Euler(-dy, -dx, 0)));
-    draw();
+    move();
   }
   function zoom(factor) {
     eye.half = Math.min(Math.max(eye.half * factor, 0.005 * whole.size), 3 * whole.size);
-    draw();
+    move();
   }
   function shift(dx, dy) {
     const step = 2 * eye.half / canvas.clientHeight;
     eye.target.add(new THREE.Vector3(-dx * step, dy * step, 0).applyQuaternion(eye.turn));
-    draw();
+    move();
   }
 
   // Maps by their names: one colour bar for all parts.

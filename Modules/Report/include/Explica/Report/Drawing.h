@@ -37,16 +37,10 @@ void drawTextWithRim(Picture& picture, std::string_view text, const Eigen::Vecto
                      double size, const Colour& colour, const Colour& rim,
                      TextAnchor anchor = TextAnchor::Left);
 
+inline constexpr double kRim = 0.45;  ///< width of that rim on both sides, of the capitals' height
+
 /// Width of a text as drawn, pixels.
 [[nodiscard]] double textWidth(std::string_view text, double size);
-
-/// A picture as an element of an SVG, from its top left corner.
-[[nodiscard]] std::string svgImage(const Picture& picture, const Eigen::Vector2d& corner,
-                                   const Eigen::Vector2d& size);
-
-/// Draws a scale's colours as a standing bar with round ticks, title and unit, in the given
-/// rectangle.
-void drawColourBar(Picture& picture, const ColourScale& scale, int x, int y, int width, int height);
 
 /// Where ticks of an axis stand: multiples of 1, 2 or 5 times a power of ten, about five of them.
 /// @param least  the step at least; 1 for counts

@@ -64,6 +64,11 @@ struct FigureView {
 struct WorldBox {
   Point low = Point::Constant(kInfinity);
   Point high = Point::Constant(-kInfinity);
+  void add(const TriangleMesh& mesh) {
+    if (mesh.vertexCount() == 0) return;
+    low = low.cwiseMin(mesh.positions.colwise().minCoeff().transpose());
+    high = high.cwiseMax(mesh.positions.colwise().maxCoeff().transpose());
+  }
   [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
 };
 [[nodiscard]] WorldBox boxAbove(const Volume<float>& image, double threshold);

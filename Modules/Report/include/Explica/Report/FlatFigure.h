@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Report/Drawing.h"
+#include "Explica/Report/Canvas.h"
 #include "Explica/Report/Figure.h"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ struct FlatLine {
 /// What is drawn onto a flat map.
 struct FlatMarks {
   std::vector<FlatLine> lines;                       ///< outlines of regions
+  std::map<Colour, std::string> regions;             ///< what those of a colour are called
   std::vector<std::pair<Point, std::string>> names;  ///< what they are called, the largest first
   std::vector<std::pair<Eigen::Vector2d, std::string>> directions;  ///< unit vector in the map: "A"
 };
@@ -34,9 +36,10 @@ struct FlatMarks {
 [[nodiscard]] Picture flatFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
                                  const FlatMarks& marks, int height = 900);
 
-/// The same without the colour bar.
-[[nodiscard]] Picture flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint,
-                                const FlatMarks& marks, int height);
+/// The same without the colour bar, in layers: the surface a picture, outlines by their regions'
+/// names, names and scale as text.
+[[nodiscard]] Canvas flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint,
+                               const FlatMarks& marks, int height);
 
 /// The largest of 1, 2, 5, 10, 20 ... that is no more than a length.
 [[nodiscard]] double roundLength(double length);

@@ -71,14 +71,6 @@ struct ReportFindings {
   std::vector<Row> rows;
 };
 
-/// A picture and what it shows.
-struct ReportPicture {
-  std::string id;  ///< of the place on the page
-  std::string title;
-  std::string caption;
-  Picture picture;
-};
-
 /// A picture that lies in a file already.
 struct ReportDrawing {
   std::string id;
@@ -101,7 +93,6 @@ struct ReportViews {
   std::vector<View> views;
   std::optional<ColourScale> scale;
   std::vector<LegendEntry> legend;
-  bool detail = false;  ///< folded away until somebody asks for it
 };
 
 /// Slices of a volume with outlines that can be switched off; where there is an `after`, the reader
@@ -113,7 +104,6 @@ struct ReportMosaic {
   SliceMosaic slices;
   std::optional<SliceMosaic> after = {};         ///< the same slices of another image
   std::array<std::string, 2> states = {"", ""};  ///< what the two images are
-  bool detail = false;                           ///< folded away until somebody asks for it
 };
 
 /// Slices to scroll through; sliceStackJson of SliceStack.h makes the data.
@@ -130,7 +120,6 @@ struct ReportChart {
   std::string id;
   std::string svg;
   std::string group = {};  ///< heading over the charts of a group, which follow each other
-  bool detail = false;     ///< folded away until somebody asks for it
 };
 
 /// Rows of words and numbers.
@@ -153,7 +142,6 @@ struct ReportContent {
   std::optional<ReportSlices> slices;
   std::vector<ReportMosaic> mosaics;
   std::vector<ReportViews> views;
-  std::vector<ReportPicture> pictures;
   std::vector<ReportDrawing> drawings;
   std::vector<ReportChart> charts;
   std::vector<ReportTable> tables;

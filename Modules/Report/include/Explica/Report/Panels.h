@@ -19,17 +19,12 @@ struct Panel {
   std::string title;
 };
 
-/// A figure for print.
-struct PanelFigure {
-  Picture picture;
-  std::string svg;  ///< the same in layers: pictures, titles, colour bar with text as text
-};
-
-/// Rows of panels, surfaces all at one scale, with one colour bar at the right.
+/// Rows of panels, surfaces all at one scale, with one colour bar at the right; layers of the
+/// pictures, the outlines and names of regions, the titles and the colour bar.
 /// @param scale  of the colour bar; none: no bar
 /// @param width  pixels, > 0
 /// @throws InvalidInput  no panel
-[[nodiscard]] PanelFigure panelFigure(const std::vector<std::vector<Panel>>& rows,
-                                      const std::optional<ColourScale>& scale, int width);
+[[nodiscard]] Canvas panelFigure(const std::vector<std::vector<Panel>>& rows,
+                                 const std::optional<ColourScale>& scale, int width);
 
 }  // namespace explica::report

@@ -14,6 +14,8 @@ namespace explica::report {
 using Colour = std::array<float, 3>;
 
 inline constexpr Colour kInk = {0.012F, 0.014F, 0.018F};  ///< of text; linear light
+inline constexpr Colour kGrey = {0.21F, 0.22F, 0.23F};    ///< of small print
+inline constexpr Colour kWhite = {1, 1, 1};               ///< paper
 
 /// Pixels in sRGB, row by row from the top left, three bytes each.
 struct Picture {

@@ -62,20 +62,15 @@ enum class Filling {
   Discrete  ///< each point has the colour of the nearest corner: for labels
 };
 
-/// Where keys of vertices part a surface, and a thin dark line runs.
-enum class Border {
-  BetweenVertices,  ///< half way between vertices of different keys: for labels
-  AroundFaces       ///< along the edges of the faces without a corner of key 0: for a region, which
-                    ///< is made of these faces; others have the colours of their corners of key 0
-};
-
 /// A surface made ready for pictures: ray-casting hierarchy and how open each vertex lies, computed
 /// once for any number of views and colours.  CPU only; the same input gives the same picture with
 /// any number of threads.
 class SurfaceScene {
  public:
+  /// @param before  the same faces where they were, or nullptr: how open a vertex lies is measured
+  ///                anew only near what has moved since
   /// @throws InvalidInput  no face, or a position that is not finite
-  explicit SurfaceScene(const TriangleMesh& mesh);
+  explicit SurfaceScene(const TriangleMesh& mesh, const SurfaceScene* before = nullptr);
   ~SurfaceScene();
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
@@ -83,12 +78,13 @@ class SurfaceScene {
   /// Draws the surface on white, lit from the eye's upper left, dark where folds hide from the sky.
   /// The inner side of faces is shown darker and bluish.
   /// @param colours  one a vertex; empty for a plain light grey
-  /// @param keys     one a vertex, or none: what `border` divides
+  /// @param keys     one a vertex, or none: a thin dark line runs about a region, which is made of
+  ///                 the faces without a corner of key 0; others have the colours of their corners
+  ///                 of key 0
   [[nodiscard]] Picture render(const Camera& camera, const std::vector<Colour>& colours,
                                Filling filling = Filling::Smooth,
                                const SurfacePictureOptions& options = {},
-                               const std::vector<std::int32_t>& keys = {},
-                               Border border = Border::BetweenVertices) const;
+                               const std::vector<std::int32_t>& keys = {}) const;
 
   /// Share of the sky that each vertex sees within a tenth of the surface's size, V values in [0,
   /// 1].
