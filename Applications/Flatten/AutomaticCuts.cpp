@@ -9,6 +9,7 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/FoldDepth.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
 
 #include <algorithm>
@@ -20,16 +21,11 @@
 namespace explica::app {
 namespace {
 
-/// Words for what is no region of the cortex, in FreeSurfer's and our own tables.
-const std::set<std::string> kNoCortex = {
-    "",           "???",         "unknown",     "Unknown",     "medialwall",
-    "MedialWall", "Medial_wall", "Medial_Wall", "medial wall", "corpuscallosum",
-    "outside",    "none"};
-
 std::vector<bool> cortexOfLabels(const io::LabelMap& labels) {
   std::set<Label> regions;
   for (const io::LabelEntry& entry : labels.table) {
-    if (!kNoCortex.contains(entry.name)) regions.insert(entry.key);
+    const bool isCortex = !io::meansNoRegion(entry.name) && entry.name != "corpuscallosum";
+    if (isCortex) regions.insert(entry.key);
   }
   std::vector<bool> cortex;
   for (const Label key : labels.keys) {

@@ -5,6 +5,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/Maps/Regions.h"
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Surface/Regions.h"
@@ -39,10 +40,7 @@ std::array<float, 4> regionColour(const CortexRegions& regions, Label key) {
 /// lies below or on the other side.
 bool noRegion(const std::string& name, const std::string& structure) {
   using segmentation::Side;
-  for (const char* word :
-       {"unknown", "Unknown", "corpuscallosum", "medialwall", "Medial_wall", "???"}) {
-    if (name == word) return true;
-  }
+  if (io::meansNoRegion(name) || name == "corpuscallosum") return true;
   const auto named = segmentation::structureNamed(name);
   const Side other = structure == "CortexRight" ? Side::Left : Side::Right;
   return named.kind != segmentation::StructureKind::Cortex || named.side == other;

@@ -79,8 +79,9 @@ void tellApart(std::vector<LabelMap>& all) {
 }  // namespace
 
 bool meansNoRegion(std::string_view name) {
-  constexpr std::array<std::string_view, 8> kWords = {
-      "unknown", "Unknown", "???", "outside", "none", "medialwall", "Medial_wall", "Medial_Wall"};
+  constexpr std::array<std::string_view, 10> kWords = {
+      "unknown",    "Unknown",     "???",         "outside",    "none",
+      "medialwall", "Medial_wall", "Medial_Wall", "MedialWall", "medial wall"};
   return name.empty() || std::ranges::find(kWords, name) != kWords.end();
 }
 

@@ -3,6 +3,7 @@
 #include "Explica/Pipeline/FlatMarks.h"
 
 #include "Explica/Flattening/PatchTable.h"
+#include "Explica/IO/RegionFiles.h"
 #include "Explica/IO/VertexDataFile.h"
 
 #include <Eigen/Cholesky>
@@ -35,7 +36,8 @@ void markRegions(const io::LabelMap& regions, const TriangleMesh& flat, report::
   }
   std::ranges::stable_sort(bySize, [](const auto& a, const auto& b) { return a.first < b.first; });
   for (const auto& [size, entry] : bySize) {
-    if (places.contains(entry->key)) marks.names.emplace_back(places.at(entry->key), entry->name);
+    if (io::meansNoRegion(entry->name) || !places.contains(entry->key)) continue;
+    marks.names.emplace_back(places.at(entry->key), entry->name);
   }
 }
 

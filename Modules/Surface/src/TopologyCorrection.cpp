@@ -229,7 +229,7 @@ void cleanPieces(const LevelSet& level, Marks& inside, std::vector<Defect>& defe
   }
 }
 
-/// Takes fill voxels back that the set does not need: simple ones, outermost first as listed.
+/// Takes fill voxels back that the set does not need: simple ones, as listed.
 void takeBack(HomotopicSet& set, const std::vector<std::size_t>& added, const Marks& target) {
   bool changed = true;
   while (changed) {
@@ -274,8 +274,9 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
     defects.push_back(describeChange(level, voxels, kind));
     defects.back().alternativeCost = alternative;
   };
-  // Both growths are balls: of each piece between them, which touches no other, either all is
-  // added or nothing.
+  // Both growths are balls.  The homology of the outer one relative to the inner one is 0, and it
+  // is the sum of that of the pieces between them, which touch no other: each by itself may be
+  // added whole.
   Marks difference(inside.size());
   for (std::size_t v = 0; v < inside.size(); ++v) {
     difference[v] = shrunk.members()[v] && !grown.members()[v];
