@@ -239,7 +239,9 @@ Termination doParticipants(Context& context, const BidsSettings& s) {
       if (ended == Ended::Failed) failed.push_back(name);
       if (ended == Ended::Interrupted) interrupted.push_back(name);
     }
-    for (const auto& [folder, key] : toKeep) keepForGroup(folder, key);
+    if (!context.monitor().shouldStop()) {  // else the other hemisphere still needs them
+      for (const auto& [folder, key] : toKeep) keepForGroup(folder, key);
+    }
     if (!context.given("dry-run") && s.keep == Keep::All) writePage(context, participant);
   }
   context.result("hemispheres_done", done);
