@@ -297,12 +297,13 @@ std::vector<Beyond> beyondEachLimit() {
        },
        {"thickness", "{input}", "--inner", "3", "--tissue", "2"}},
       {"corrected", false,
-       [] {  // cavities close to its surface
-         Volume<float> labels = ballLabels(40, 44, 48, 2);
+       [] {  // white matter's border is noise
+         Volume<float> labels = ballLabels(40, 46, 50, 2);
+         std::mt19937 random(1);
          for (std::size_t v = 0; v < labels.size(); ++v) {
            const auto [i, j, k] = labels.grid.subscripts(v);
            const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
-           if (r < 40 && i % 3 == 0 && j % 3 == 0 && k % 3 == 0) labels[v] = 2;
+           if (std::abs(r - 40) < 4 && random() % 3 == 0) labels[v] = labels[v] == 3 ? 2 : 3;
          }
          return labels;
        },
