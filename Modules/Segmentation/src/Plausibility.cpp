@@ -91,13 +91,12 @@ constexpr Limit kLimits[] = {
      "measured: 0 to 0.3 % in whole hemispheres"},
     {"corrected", "the share of the white surface that was made by correcting its topology", "", 0,
      0.05, "white matter may be noise; look at topology.tsv and the surface there",
-     "measured: 0.001 to 0.01 in 18 people's T1s of 1 mm, ten of them simulated, and in the label "
-     "maps of these ten, 0.02 with a noise of 9 % of white matter, 0.03 in a T1 of 2 mm"},
+     "measured: below 0.01 in T1s of 1 mm of 17 people, nine of them simulated, and in the label "
+     "maps of six of these, 0.02 with a noise of 9 % of white matter, 0.03 in a T1 of 2 mm"},
     {"exchanged", "the share of white matter's border without grey matter upon it", "", 0, 0.3,
      "white matter may be exchanged with grey matter or fluid",
-     "measured: 0.01 to 0.14 in T1s and label maps of a dozen people each, 0.51 to 0.56 where "
-     "labels "
-     "are exchanged"},
+     "measured: 0.01 to 0.14 in six people's T1s and seven people's label maps, 0.51 to 0.56 where "
+     "labels are exchanged"},
 };
 
 std::string shortNumber(double value) {
