@@ -19,6 +19,8 @@ constexpr double kDeep = 2;           // voxels inside the border: white matter
 constexpr double kMost = 0.5;         // of the ribbon a border goes outward in one pass
 constexpr double kFarthest = 4;       // voxels inward, all passes together
 constexpr int kSmooth = 1;            // places on each side over which a slope is taken
+/// Voxels before a mask's edge that a voxel there changes, between its centre and the next one's.
+constexpr double kPartial = 1.5;
 
 /// The usual brightness of the tissues, times `sign`.
 struct Usual {
@@ -42,19 +44,19 @@ Usual usualBrightness(const std::vector<Trajectory>& paths, const Volume<float>&
 class PathSearch {
  public:
   PathSearch(const std::vector<Trajectory>& paths, const geometry::MeshTopology& topology,
-             double edge, const Volume<float>& image, double voxel,
-             const EdgeSearchOptions& options)
+             double edge, const MaskedImage& masked, double voxel, const EdgeSearchOptions& options)
       : paths_(paths),
         topology_(topology),
-        image_(image),
+        image_(masked.image),
         voxel_(voxel),
         options_(options),
         times_(timesFor(options.spread * voxel, edge)),
-        usual_(usualBrightness(paths, image, voxel)),
+        usual_(usualBrightness(paths, masked.image, voxel)),
         way_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(paths.size()))),
         first_(-static_cast<int>(std::lround(options.inward / kProfileStep)) - kSmooth),
         count_(static_cast<int>(std::lround(options.outward / kProfileStep)) + kSmooth - first_ +
-               1) {}
+               1),
+        whole_(wholeUpTo(masked)) {}
 
   void improve() {
     const Eigen::MatrixXd edges =
@@ -85,6 +87,23 @@ class PathSearch {
  private:
   [[nodiscard]] double valueOf(std::size_t v, double arc) const {
     return usual_.sign * valueAt(image_, along(paths_[v], arc));
+  }
+
+  /// How far along each trajectory voxels are seen that a mask's edge leaves whole, mm.
+  [[nodiscard]] Eigen::VectorXd wholeUpTo(const MaskedImage& masked) const {
+    Eigen::VectorXd whole = Eigen::VectorXd::Constant(way_.size(), kInfinity);
+    if (masked.seen.size() == 0) return whole;
+    const double step = kProfileStep * voxel_;
+    parallelFor(paths_.size(), 256, [&](std::size_t v) {
+      if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
+      const double last = paths_[v].length() + kPartial * voxel_;
+      for (double arc = 0; arc < last; arc += step) {
+        if (masked.seenAt(along(paths_[v], arc)) >= 0.5) continue;
+        whole[static_cast<Eigen::Index>(v)] = arc - kPartial * voxel_;
+        return;
+      }
+    });
+    return whole;
   }
 
   /// Length of the ribbon outside of the border as it is.
@@ -120,6 +139,7 @@ class PathSearch {
       for (int k = kSmooth + 1; k < count_ - kSmooth - 1; ++k) {
         const double place = (first_ + k) * kProfileStep;
         if (place * voxel_ > kMost * lengthOf(v) || !(mean(row, k) > usual_.grey)) continue;
+        if (way_[row] + place * voxel_ > whole_[row]) continue;
         if (slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
         const double off = place / options_.likely;
         const double score = slope[k] * std::exp(-0.5 * off * off);
@@ -160,13 +180,14 @@ class PathSearch {
   Usual usual_;
   Eigen::VectorXd way_;
   int first_, count_;
+  Eigen::VectorXd whole_;  ///< see wholeUpTo()
 };
 
 }  // namespace
 
 Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
                             const geometry::MeshTopology& topology, double edge,
-                            const Volume<float>& image, double voxel,
+                            const MaskedImage& image, double voxel,
                             const EdgeSearchOptions& options) {
   PathSearch search(paths, topology, edge, image, voxel, options);
   for (int pass = 0; pass < options.passes; ++pass) search.improve();

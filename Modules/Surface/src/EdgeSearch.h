@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Volume.h"
 #include "Explica/Geometry/MeshTopology.h"
+#include "MaskedImage.h"
 #include "RibbonPaths.h"
 
 #include <Eigen/Core>
@@ -36,12 +36,13 @@ struct EdgeSearchOptions {
 /// What is darker than the usual middle of the ribbon is no border of white matter.  Each vertex
 /// goes to where that edge lies on the average of its neighbours', and cuts its own profile near
 /// there at the edge's brightness, averaged.  Going by brightness alone, it would never cross a
-/// cortex that is nearly white and equally so all through.
+/// cortex that is nearly white and equally so all through.  Where a mask has cut the image off at
+/// the cortex, its last voxels may be part fluid, and a fall to them is no border of white matter.
 /// @param edge  mean length of the edges, mm
 /// @return per vertex, mm outward along the trajectory
 [[nodiscard]] Eigen::VectorXd searchWhite(const std::vector<Trajectory>& paths,
                                           const geometry::MeshTopology& topology, double edge,
-                                          const Volume<float>& image, double voxel,
+                                          const MaskedImage& image, double voxel,
                                           const EdgeSearchOptions& options = {});
 
 }  // namespace explica::surface

@@ -351,7 +351,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   borders.doubt = Eigen::MatrixXd::Zero(white.vertexCount(), 2);
   std::vector<Trajectory> paths = given;
   if (options.search) {
-    borders.white = searchWhite(given, topology, edge, masked.image, voxel);
+    borders.white = searchWhite(given, topology, edge, masked, voxel);
     parallelFor(paths.size(), 256, [&](std::size_t v) {
       if (paths[v].end == TrajectoryEnd::NoRibbon) return;
       paths[v] = between(given[v], borders.white[static_cast<Eigen::Index>(v)], given[v].length());
