@@ -12,6 +12,7 @@
 #include "Explica/Registration/Summary.h"
 #include "TemplateFiles.h"
 
+#include <cmath>
 #include <sstream>
 
 namespace explica::app {
@@ -118,6 +119,8 @@ Head fitTemplate(Context& context, Judge& judge, const SegmentSettings& s,
   auto step = context.step("template");
   const auto found = registered(context, s, mask.size() != 0 ? within(image, mask) : image,
                                 loaded.volumes, stripped);
+  summary.fluidOfWhite = found.fluidOfWhite;
+  if (std::isfinite(found.fluidOfWhite)) judge.require("fluid-of-white", found.fluidOfWhite);
   if (!s.templateTransform) summary.information = found.information;
   summary.correlation = found.agreement.correlation;
   summary.leastJacobian = found.agreement.leastJacobian;

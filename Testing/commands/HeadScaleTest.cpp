@@ -239,6 +239,20 @@ TEST_F(WholeHead, UpsideDownIsFlaggedByItsRegistrationAlone) {
   EXPECT_EQ(flag["value"], numberOf(folder_ / "segment", "registration_correlation"));
 }
 
+TEST_F(WholeHead, AProtonDensityImageIsRefusedByItsFluid) {
+  const fs::path image = folder_ / "pd.nii.gz";
+  writeCoarse(image, asItIs);
+  Volume<float> brain = io::readScalars(image).volume;
+  for (float& value : brain.data) value = value > 0 ? 130 - 0.25f * value : 0;
+  io::writeVolume(image, brain);
+  const auto run =
+      patiently({"segment", image, "--accept", "bright-fluid", "--out", folder_ / "segment"});
+  EXPECT_EQ(run.exitCode, 2) << run;
+  EXPECT_NE(run.err.find("proton density"), std::string::npos) << run;
+  EXPECT_NE(run.err.find("--accept fluid-of-white"), std::string::npos) << run;
+  EXPECT_FALSE(fs::exists(folder_ / "segment")) << run;
+}
+
 /// A study of the template's brain, its left half and its mirror image, once for all tests.
 class CoarseHeads : public ::testing::Test {
  protected:

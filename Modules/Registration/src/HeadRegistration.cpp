@@ -3,6 +3,8 @@
 #include "Explica/Registration/HeadRegistration.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OrderStatistics.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Registration/AffineRegistration.h"
 #include "Filters.h"
 
@@ -10,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace explica::registration {
 namespace {
@@ -38,6 +42,44 @@ Volume<float> grown(const Volume<float>& mask, double by) {
 double volumeAboveZero(const Volume<float>& image) {
   const auto inside = std::ranges::count_if(image.data, [](float value) { return value > 0; });
   return static_cast<double>(inside) * image.grid.voxelVolume();
+}
+
+constexpr Label kPureFluid = 1, kPureWhite = 2;
+
+/// Voxels of pure fluid and pure white matter: whose neighbours are such, too.
+Volume<Label> pureTissues(const Volume<float>& brain) {
+  constexpr double kWhitest = 0.95, kDarkerThan = 0.4, kBrighterThan = 0.9;
+  std::vector<float> inside;
+  std::ranges::copy_if(brain.data, std::back_inserter(inside), [](float x) { return x > 0; });
+  const float white = inside.empty() ? 0 : quantileOf(std::move(inside), kWhitest);
+  const auto tissueOf = [&](float value) -> Label {
+    if (value > kBrighterThan * white) return kPureWhite;
+    return value > 0 && value < kDarkerThan * white ? kPureFluid : 0;
+  };
+  Volume<Label> pure(brain.grid, 0);
+  parallelFor(brain.size(), 4096, [&](std::size_t v) {
+    const Label tissue = tissueOf(brain[v]);
+    const bool isPure = std::ranges::all_of(brain.grid.neighbours(v), [&](std::int64_t w) {
+      return w >= 0 && tissueOf(brain[w]) == tissue;
+    });
+    if (isPure) pure[v] = tissue;
+  });
+  return pure;
+}
+
+/// See HeadRegistration::fluidOfWhite.
+double fluidOfWhite(const Volume<float>& image, const Volume<float>& brain,
+                    const HeadTransform& transform) {
+  constexpr double kDarkerQuarter = 0.25;  // what the template has as fluid may be other tissue
+  const Volume<Label> tissue = pulled(pureTissues(brain), transform, image.grid);
+  std::vector<float> fluid, white;
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    if (!(image[v] > 0)) continue;
+    if (tissue[v] == kPureFluid) fluid.push_back(image[v]);
+    if (tissue[v] == kPureWhite) white.push_back(image[v]);
+  }
+  if (fluid.empty() || white.empty()) return kNaN;
+  return quantileOf(std::move(fluid), kDarkerQuarter) / upperMedian(std::move(white));
 }
 
 /// What of a template an image is compared with.
@@ -90,6 +132,7 @@ HeadRegistration registerHead(const Volume<float>& image, const Template& head, 
   found.transform = std::move(deformed.transform);
   found.agreement = deformed.agreement;
   found.brain = pulled(pattern.mask, found.transform, image.grid);
+  found.fluidOfWhite = fluidOfWhite(image, head.brain, found.transform);
   return found;
 }
 
@@ -108,6 +151,7 @@ HeadRegistration reuseRegistration(const Volume<float>& image, const Template& h
       agreementOf(image, pattern.like, pattern.around(kNearby), transform, pattern.scaled(options));
   found.transform = std::move(transform);
   found.brain = pulled(pattern.mask, found.transform, image.grid);
+  found.fluidOfWhite = fluidOfWhite(image, head.brain, found.transform);
   return found;
 }
 

@@ -21,6 +21,10 @@ struct HeadRegistration {
   double information = 0;  ///< of the affine part, 1 to 2; 0 if the transform was given
   Agreement agreement;     ///< of the whole
   Volume<float> brain;     ///< the template's brain mask on the image's grid, 0 to 1
+  /// Brightness where the template has fluid, its darker quarter, over that of white matter: below
+  /// 1 in a T1, above in a T2 or a proton density image; NaN where there is no fluid or white
+  /// matter.
+  double fluidOfWhite = 0;
 };
 
 /// Volume of the template's brain, mm^3.
