@@ -346,20 +346,20 @@ CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges, const 
 }
 
 double bareShare(const CorticalTissue& tissue) {
-  enum Role : std::uint8_t { Outside, White, Grey, Insulated };
-  Volume<std::uint8_t> roles(tissue.white.grid, Outside);
-  for (std::size_t v = 0; v < roles.size(); ++v) {
-    roles[v] = tissue.white[v] > 0        ? White
-               : tissue.insulated[v] != 0 ? Insulated
-               : tissue.tissue[v] > 0     ? Grey
-                                          : Outside;
+  const Grid& grid = tissue.white.grid;
+  double bare = 0, all = 0;  // mm^2 of voxel faces
+  for (std::size_t v = 0; v < tissue.white.size(); ++v) {
+    if (!(tissue.white[v] > 0)) continue;
+    const auto neighbours = grid.neighbours(v);
+    for (int d = 0; d < 6; ++d) {
+      const std::int64_t w = neighbours[d];
+      if (w < 0 || tissue.white[w] > 0 || tissue.insulated[w] != 0) continue;
+      const double area = grid.voxelVolume() / grid.spacing[d / 2];
+      all += area;
+      if (!(tissue.tissue[w] > 0)) bare += area;
+    }
   }
-  std::array<std::int64_t, 4> faces{};  // of white voxels, by the role beside
-  forContacts(roles, [&](std::uint8_t a, std::uint8_t b) {
-    if ((a == White) != (b == White)) ++faces[a == White ? b : a];
-  });
-  const auto all = static_cast<double>(faces[Grey] + faces[Outside]);
-  return all > 0 ? static_cast<double>(faces[Outside]) / all : 0;
+  return all > 0 ? bare / all : 0;
 }
 
 CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions& options,

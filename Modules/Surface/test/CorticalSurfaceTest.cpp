@@ -887,6 +887,24 @@ TEST(CorticalSurface, DoesNotDependOnThreads) {
   EXPECT_EQ(one.thickness, three.thickness);
 }
 
+TEST(CorticalTissue, WhiteMatterIsBareByArea) {
+  // A brick of 8 x 8 x 4 mm in voxels of 1 x 1 x 2 mm, with grey matter on its top and one side and
+  // a cut beneath: three sides of four are bare.
+  constexpr Label kGrey = 2, kWhite = 3, kCut = 4;
+  Volume<Label> labels(lattice(16, Vector(1, 1, 2)), 0);
+  for (int j = 4; j < 12; ++j) {
+    for (int i = 4; i < 12; ++i) {
+      labels(i, j, 5) = kCut;
+      labels(i, j, 6) = labels(i, j, 7) = kWhite;
+      labels(i, j, 8) = kGrey;
+      labels(12, j, 6) = labels(12, j, 7) = kGrey;
+    }
+  }
+  TissueOptions options;
+  options.preset = LabelPreset::ThreeClass;
+  EXPECT_NEAR(bareShare(tissueFromLabels(labels, options)), 3 * 32.0 / (4 * 32 + 64), 1e-12);
+}
+
 TEST(CorticalTissue, NamesWhatIsWrong) {
   const Grid grid = lattice(30, Vector::Constant(1));
   const auto ball = volumeOf(

@@ -123,8 +123,8 @@ struct CorticalTissue : TissueFacts {
 [[nodiscard]] CorticalTissue tissueFromMasks(const TissueMasks& masks, bool closeEdges = false,
                                              const Monitor& monitor = {});
 
-/// Share of white matter's voxel faces to what is neither white nor insulated that have no grey
-/// matter on the other side; 0 for an empty tissue.
+/// Share, by area, of white matter's voxel faces to what is neither white nor insulated that have
+/// no grey matter on the other side; 0 for an empty tissue.
 [[nodiscard]] double bareShare(const CorticalTissue& tissue);
 
 /// Both in one.
