@@ -185,14 +185,15 @@ double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel,
     return std::sqrt(nearest.squaredDistance);
   };
   const double window = kWindow * voxel, length = path.length();
-  const double gained = distanceAt(length) - distanceAt(0);
+  const double last = distanceAt(length), gained = last - distanceAt(0);
   if (length - gained < 0.5 * (1 - kRate) * window) return length;  // what it need not look at
+  double here = distanceAt(first), next = distanceAt(std::min(first + 0.5 * window, length));
   for (double from = first; from < length; from += 0.5 * window) {
     const double to = std::min(from + window, length);
-    if (to - from < 0.5 * window || distanceAt(to) - distanceAt(from) >= kRate * (to - from)) {
-      continue;
-    }
-    return from;
+    const double there = to < length ? distanceAt(to) : last;
+    if (to - from >= 0.5 * window && there - here < kRate * (to - from)) return from;
+    here = next;
+    next = there;
   }
   return length;
 }

@@ -21,6 +21,9 @@ constexpr double kFarthest = 4;       // voxels inward, all passes together
 constexpr int kSmooth = 1;            // places on each side over which a slope is taken
 /// Voxels before a mask's edge that a voxel there changes, between its centre and the next one's.
 constexpr double kPartial = 1.5;
+/// Least fall a voxel, of the usual contrast, for which a border leaves such voxels: a quarter of
+/// that of an edge seen through a point spread of a voxel's deviation.
+constexpr double kLeastFall = 0.1;
 
 /// The usual brightness of the tissues, times `sign`.
 struct Usual {
@@ -136,11 +139,13 @@ class PathSearch {
         slope[k] = mean(row, k - kSmooth) - mean(row, k + kSmooth);
       }
       double best = 0;
+      const double usual = kLeastFall * 2 * kSmooth * kProfileStep * (usual_.white - usual_.grey);
+      const double least = way_[row] > whole_[row] ? usual : 0;
       for (int k = kSmooth + 1; k < count_ - kSmooth - 1; ++k) {
         const double place = (first_ + k) * kProfileStep;
         if (place * voxel_ > kMost * lengthOf(v) || !(mean(row, k) > usual_.grey)) continue;
         if (way_[row] + place * voxel_ > whole_[row]) continue;
-        if (slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
+        if (slope[k] < least || slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
         const double off = place / options_.likely;
         const double score = slope[k] * std::exp(-0.5 * off * off);
         if (score <= best) continue;
