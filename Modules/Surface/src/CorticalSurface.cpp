@@ -434,27 +434,6 @@ void mendTriangles(CorticalSurfaces& result) {
   }
 }
 
-/// Share of the surface's area between voxels of which one's sign differs.
-double shareBeside(const LevelSet& before, const LevelSet& after, const TriangleMesh& mesh) {
-  const Grid& grid = after.grid;
-  const auto differs = [&](int i, int j, int k) {
-    return grid.contains(i, j, k) && (before(i, j, k) > 0) != (after(i, j, k) > 0);
-  };
-  const Eigen::VectorXd areas = geometry::vertexAreas(mesh);
-  Eigen::VectorXd beside = Eigen::VectorXd::Zero(areas.size());
-  parallelFor(areas.size(), 4096, [&](std::size_t v) {
-    const auto row = static_cast<Eigen::Index>(v);
-    const Vector low = grid.toIndex(mesh.positions.row(row)).array().floor();
-    for (int n = 0; n < 8; ++n) {
-      if (differs(static_cast<int>(low[0]) + (n & 1), static_cast<int>(low[1]) + (n >> 1 & 1),
-                  static_cast<int>(low[2]) + (n >> 2))) {
-        beside[row] = areas[row];
-      }
-    }
-  });
-  return beside.sum() / areas.sum();
-}
-
 }  // namespace
 
 WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& options,
@@ -477,7 +456,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
   keepRoom(white.mesh, roomOf(white));
-  white.correctedShare = shareBeside(tissue.white, white.level, white.mesh);
+  white.correctedShare = correctedShare(tissue.white, white.level, white.mesh);
   return white;
 }
 

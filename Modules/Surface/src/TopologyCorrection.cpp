@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Freudenthal.h"
 
 #include <algorithm>
@@ -393,6 +394,26 @@ TopologyResult correctTopology(const LevelSet& level, GenusRule rule, const Moni
   result.handlesLeft = 1 - boundaryEulerCharacteristic(result.level) / 2;
   monitor.progress(1.0, "topology corrected");
   return result;
+}
+
+double correctedShare(const LevelSet& before, const LevelSet& after, const TriangleMesh& mesh) {
+  const Grid& grid = after.grid;
+  const auto differs = [&](int i, int j, int k) {
+    return grid.contains(i, j, k) && (before(i, j, k) > 0) != (after(i, j, k) > 0);
+  };
+  const Eigen::VectorXd areas = geometry::vertexAreas(mesh);
+  Eigen::VectorXd beside = Eigen::VectorXd::Zero(areas.size());
+  parallelFor(areas.size(), 4096, [&](std::size_t v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    const Vector low = grid.toIndex(mesh.positions.row(row)).array().floor();
+    for (int n = 0; n < 8; ++n) {
+      if (differs(static_cast<int>(low[0]) + (n & 1), static_cast<int>(low[1]) + (n >> 1 & 1),
+                  static_cast<int>(low[2]) + (n >> 2))) {
+        beside[row] = areas[row];
+      }
+    }
+  });
+  return beside.sum() / areas.sum();
 }
 
 }  // namespace explica::surface

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Describe.h"
 #include "Explica/Core/Monitor.h"
+#include "Explica/Core/TriangleMesh.h"
 #include "Explica/Surface/LevelSet.h"
 
 #include <array>
@@ -73,5 +74,10 @@ struct TopologyResult {
 
 /// Distance from each voxel's centre to the nearest voxel with mask == target, mm; 0 on those.
 [[nodiscard]] Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target);
+
+/// Share of a surface's area that lies between voxels of which the correction changed one.
+/// @param mesh  boundary of the positive voxels of `after`, mm
+[[nodiscard]] double correctedShare(const LevelSet& before, const LevelSet& after,
+                                    const TriangleMesh& mesh);
 
 }  // namespace explica::surface
