@@ -32,13 +32,6 @@ constexpr double kCollarShare = 0.6;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
-  if (!(options.yieldStrain > 0)) throw InvalidInput("yield-strain: must be positive");
-  if (options.timeStep && !(*options.timeStep > 0)) {
-    throw InvalidInput("time-step: must be positive");
-  }
-  if (options.collarWidth && !(*options.collarWidth > 0)) {
-    throw InvalidInput("collar-width: must be positive");
-  }
   if (region.faces.empty()) throw InvalidInput("region: has no face");
 }
 
