@@ -35,7 +35,7 @@ bool Unfolder::Implementation::thesisStep() {
   }
   if (options.keepAreas) {
     const PhaseClock clock(now.phases.solve);
-    now.solves = keepAreas(setup.patch, x, setup.unknown, velocity).iterations;
+    now.solves = keepAreas(setup.patch, x, setup.unknown, velocity);
   }
   const double fastest = std::sqrt(velocity.rowwise().squaredNorm().maxCoeff());
   if (!(fastest > 0)) {
