@@ -475,10 +475,12 @@ TEST(UnfoldCommand, FarFromTheOriginNothingIsLost) {
 
 TEST(UnfoldCommand, WhatTheThesisMethodLetsCrossIsSaid) {
   const TemporaryFolder folder;
+  explica({"phantom", "folds", "--edge", "2.5", "--length", "60", "--waves", "3", "--out",
+           folder / "folds"});
   const auto result =
-      explica(onFoldedSphere(folder) + std::vector<std::string>{"--surround", "fixed", "--method",
-                                                                "thesis", "--max-iterations", "150",
-                                                                "--out", folder / "out"});
+      explica({"unfold", folder / "folds/folds.surf.gii", "--label",
+               folder / "folds/region.label.gii", "--direction", "0,0,1", "--surround", "fixed",
+               "--method", "thesis", "--max-iterations", "50", "--out", folder / "out"});
   EXPECT_EQ(result.exitCode, 3) << result;
   const auto summary = readJson(folder / "out/summary.json");
   const auto pairs =
