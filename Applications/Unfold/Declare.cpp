@@ -48,9 +48,7 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
                     "the result is compared with the surface so repaired"},
               s.repair)
       .options("Unfolding", s.unfold)
-      .needs({"time-step"}, {"method=thesis"})
       .needs({"knot-weight"}, {"knot"})
-      .needs({"collar-width"}, {"surround=elastic"})
       .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
               s.resume)
       .reuseOutputIf(s.resume)

@@ -27,8 +27,7 @@ FACTOR = 4  # from the default to the lower and the higher value
 SMALL = DATA / "fsaverage5" / "fsaverage3_fs_binary"
 PIAL, WHITE = DATA / "fsaverage5" / "pial_left.gii.gz", DATA / "fsaverage5" / "white_left.gii.gz"
 SIDE = ["--direction=-1,0.2,0.2"]
-THESIS = ["--surround", "none", "--method", "thesis", "--knot", "tree", "--knot-weight", "0.2", "--time-step", "0.02",
-          "--max-iterations", "60"]
+THESIS = ["--surround", "none", "--method", "thesis", "--knot", "tree", "--knot-weight", "0.2", "--max-iterations", "60"]
 
 # Subjects of each command: name, inputs and words.  {folder} has the phantoms.
 SUBJECTS = {
@@ -128,7 +127,7 @@ MEASURES = {
 
 # Values other than a quarter and four times the default.
 VALUES = {
-    "unfold": {"collar-width": [6, 40], "time-step": [0.005, 0.05], "distance": [100, 10000], "cone": [],
+    "unfold": {"distance": [100, 10000], "cone": [],
                "target-visibility": [0.9, 0.99], "max-iterations": [10, 2000],
                "frames": [3], "knot": ["tree"]},  # the other two sum the same pairs, for minutes
     "flatten": {"cut.strain": [0.08, 0.2], "cut.most": [3, 48], "area-tolerance": [0.0025, 0.04], "frames": [3],

@@ -18,6 +18,7 @@ struct FormerOption {
 };
 
 inline constexpr char kTrade[] = "--trade weighs visibility against strain";
+inline constexpr char kKept[] = "areas are always kept";
 inline constexpr char kBetween[] = "--inner-radius and --outer-radius bound the annulus";
 inline constexpr char kByPage[] = "ExampleData/thesis.sh computes the thesis's global flows";
 inline constexpr char kByHeart[] = "explica heart has the segments of the left ventricle";
@@ -49,20 +50,25 @@ inline constexpr std::array kFormerOptions = std::to_array<FormerOption>(
      {"thickness", "image-edge", "", "valid.nii.gz marks where the image's edge may matter"},
      {"thickness", "rv-insertion", "", kByHeart},
      {"unfold", "adjust-region", "", "another --radius or view makes the visibility positive"},
+     {"unfold", "area-tolerance", "", kKept},
      {"unfold", "area-weight", "", kTrade},
      {"unfold", "atlas", "label"},
      {"unfold", "collar-weight", "", kTrade},
+     {"unfold", "collar-width", "", "the collar is as wide as the region has to move"},
      {"unfold", "contact-range", "", kTrade},
      {"unfold", "contact-weight", "", kTrade},
      {"unfold", "guide-faces", "", kTrade},
      {"unfold", "guide-weight", "", kTrade},
-     {"unfold", "keep-areas", "", "areas are always kept"},
+     {"unfold", "keep-areas", "", kKept},
      {"unfold", "lift-weight", "", kTrade},
      {"unfold", "map", "label"},
      {"unfold", "max-time", "", "--max-time holds for the whole command"},
      {"unfold", "overhang-weight", "", kTrade},
      {"unfold", "region", "label-key"},
-     {"unfold", "view-weights", "", "name a viewpoint several times for more weight"}});
+     {"unfold", "spring-weight", "", kTrade},
+     {"unfold", "time-step", "", "the thesis's flow chooses its steps"},
+     {"unfold", "view-weights", "", "name a viewpoint several times for more weight"},
+     {"unfold", "yield-strain", "", kTrade}});
 
 /// What became of a former option of a command, or of a step as "surface.white": "--grid is called
 /// --cells now".  Empty if it never was one.

@@ -4,16 +4,15 @@
 """What a patch's lengths have to pay for its being seen: the front of mean edge strain against visibility.
 
     Modules/Unfolding/benchmark/pareto.py build/bin/explica SURFACE (--vertex I | --center=X,Y,Z) --radius R
-        --direction=X,Y,Z [--surround none] [--targets 0.965 ...] [--yields 0.005 ...] [--springs 60 ...]
+        --direction=X,Y,Z [--surround none] [--targets 0.965 ...] [--trades 1 ...]
         [-- further words of explica unfold]
 
-Unfolds the patch once for each target visibility, yield strain and strength of the lengths, areas kept; free of its
-surroundings unless told otherwise.  Prints a row for each run, then the front: of the runs that nothing beats in both
+Unfolds the patch once for each target visibility and once for each trade, areas kept; free of its surroundings unless
+told otherwise.  Prints a row for each run, then the front: of the runs that nothing beats in both
 visibility and strain, the numbers, and by how much the nearest misses the goal of 0.98 and 9 %.
 """
 
 import argparse
-import itertools
 import json
 import pathlib
 import subprocess
@@ -24,12 +23,11 @@ GOAL = (0.98, 0.09)  # visibility at least, strain at most
 KEPT = 0.002  # mean area error at most
 
 
-def unfold(chosen, more, target, yields, spring, out):
+def unfold(chosen, more, aim, out):
     """The summary of one unfolding, or None if it was refused."""
     words = [chosen.program, "unfold", chosen.surface, "--radius", chosen.radius, "--direction=" + chosen.direction]
     words += ["--vertex", chosen.vertex] if chosen.vertex else ["--center=" + chosen.center]
-    words += ["--surround", chosen.surround, "--target-visibility", str(target), "--yield-strain", str(yields)]
-    words += ["--spring-weight", str(spring), "--out", out, "--force", "--quiet", *more]
+    words += ["--surround", chosen.surround, *aim, "--out", out, "--force", "--quiet", *more]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3):
         return None
@@ -63,22 +61,21 @@ def main():
     parser.add_argument("--direction", required=True)
     parser.add_argument("--surround", default="none")
     parser.add_argument("--targets", type=float, nargs="+", default=[0.965, 0.97, 0.975, 0.9785, 0.98, 0.985])
-    parser.add_argument("--yields", type=float, nargs="+", default=[0.005, 0.015, 0.04])
-    parser.add_argument("--springs", type=float, nargs="+", default=[20, 60, 180])
+    parser.add_argument("--trades", type=float, nargs="+", default=[0.5, 1, 2, 4, 8])
     chosen, more = parser.parse_args(given[:cut]), given[cut + 1 :]
     points = []
     with tempfile.TemporaryDirectory() as folder:
-        for target, yields, factor in itertools.product(chosen.targets, chosen.yields, chosen.springs):
-            summary = unfold(chosen, more, target, yields, factor, folder + "/u")
+        for aim in [("--target-visibility", str(t)) for t in chosen.targets] + [("--trade", str(t)) for t in chosen.trades]:
+            summary = unfold(chosen, more, aim, folder + "/u")
             if summary is None or summary["area_error_mean"] > KEPT:
                 continue
-            points.append((summary["visibility_final"], summary["edge_strain_mean"], yields, factor))
-            print(f"yield {yields:g}, springs {factor:g}: {points[-1][0]:.4f}, {100 * points[-1][1]:.2f} %", flush=True)
+            points.append((summary["visibility_final"], summary["edge_strain_mean"], " ".join(aim)))
+            print(f"{points[-1][2]}: {points[-1][0]:.4f}, {100 * points[-1][1]:.2f} %", flush=True)
     if not points:
         raise SystemExit("no run kept its areas")
-    print("visibility, strain of the front (yield, springs):")
-    for visibility, strain, yields, factor in front(points):
-        print(f"{visibility:.4f}, {100 * strain:.2f} % ({yields:g}, {factor:g})")
+    print("visibility, strain of the front:")
+    for visibility, strain, aim in front(points):
+        print(f"{visibility:.4f}, {100 * strain:.2f} % ({aim})")
     nearest = min(points, key=lacks)
     print(f"nearest to the goal: {nearest[0]:.4f}, {100 * nearest[1]:.2f} %, lacking {max(0, lacks(nearest)):.4f}")
 

@@ -9,20 +9,17 @@
 
 namespace explica::unfolding {
 
-ProjectionAccount keepAreas(const Patch& patch, const Positions& x,
-                            const std::vector<std::int32_t>& unknown, Positions& velocity) {
+int keepAreas(const Patch& patch, const Positions& x, const std::vector<std::int32_t>& unknown,
+              Positions& velocity) {
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index row = 0;
   for (const PatchFace& face : patch.ofRegion()) {
-    const Point a = x.row(face.vertices[0]).transpose(), b = x.row(face.vertices[1]).transpose(),
-                c = x.row(face.vertices[2]).transpose();
-    const Vector normal = (b - a).cross(c - a).normalized();
-    const std::array<Vector, 3> slopes = {0.5 * normal.cross(c - b), 0.5 * normal.cross(a - c),
-                                          0.5 * normal.cross(b - a)};
+    const FaceShape shape = shapeOf(face, x);
     for (int k = 0; k < 3; ++k) {
       const std::int32_t u = unknown[face.vertices[k]];
       if (u < 0) continue;
-      for (int axis = 0; axis < 3; ++axis) entries.emplace_back(row, 3 * u + axis, slopes[k][axis]);
+      const Vector slope = shape.area * shape.hat[k];
+      for (int axis = 0; axis < 3; ++axis) entries.emplace_back(row, 3 * u + axis, slope[axis]);
     }
     ++row;
   }
@@ -42,14 +39,13 @@ ProjectionAccount keepAreas(const Patch& patch, const Positions& x,
   solver.setMaxIterations(2000);
   solver.compute(normalMatrix);
   const Eigen::VectorXd rates = jacobian * flat;
-  const Eigen::VectorXd multipliers = solver.solve(rates);
-  flat -= jacobian.transpose() * multipliers;
+  flat -= jacobian.transpose() * solver.solve(rates);
   for (std::size_t v = 0; v < unknown.size(); ++v) {
     if (unknown[v] >= 0) {
       velocity.row(static_cast<Eigen::Index>(v)) = flat.segment<3>(3 * unknown[v]).transpose();
     }
   }
-  return {static_cast<int>(solver.iterations()), solver.error()};
+  return static_cast<int>(solver.iterations());
 }
 
 }  // namespace explica::unfolding

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace explica::unfolding {
 namespace {
@@ -19,7 +20,6 @@ void requireUsable(const UnfoldOptions& options) {
       !(*options.targetVisibility > 0 && *options.targetVisibility <= 1)) {
     throw InvalidInput("target-visibility: must be above 0 and at most 1");
   }
-  if (!(options.areaTolerance > 0)) throw InvalidInput("area-tolerance: must be positive");
   if (!(options.trade > 0)) throw InvalidInput("trade: must be positive");
   if (options.maxIterations <= 0) throw InvalidInput("max-iterations: must be positive");
   if (options.frames < 0) throw InvalidInput("frames: must not be negative");
@@ -48,6 +48,17 @@ double changeOver(const std::vector<IterationRecord>& history, int since,
   if (options.unfolder.method == Method::Thesis) return rise;
   return std::max(std::abs(rise),
                   std::abs(last.edgeStrainMean - then.edgeStrainMean) / options.trade);
+}
+
+/// Whether areas, as stiff as they get, come no nearer to being kept: they changed as little over
+/// the window as what is at rest, and as many iterations more would not keep them.
+bool areasAreHeld(const std::vector<IterationRecord>& history, double tolerance) {
+  const auto window = std::span(history).last(kWindow + 1);
+  for (const IterationRecord& record : window.subspan(1)) {
+    if (record.phase != Phase::Settling) return false;
+  }
+  const double error = window.back().areaErrorMean;
+  return window.front().areaErrorMean - error < std::min(kAccuracy / 2, error - tolerance);
 }
 
 /// Strength of the visibility term at which one per cent of visibility costs the strain that it is
@@ -105,7 +116,8 @@ Continuation::Outlook Continuation::outlook(Unfolder& unfolder,
   return now;
 }
 
-Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
+Termination Continuation::endOf(Unfolder& unfolder, const std::vector<IterationRecord>& history,
+                                const Outlook& now) const {
   const auto& target = options_.targetVisibility;
   const IterationRecord& last = now.last;
   const bool reached = target && last.visibility >= *target;
@@ -120,8 +132,11 @@ Termination Continuation::endOf(Unfolder& unfolder, const Outlook& now) const {
   const bool enough =
       !target && !gives &&
       merit(last.visibility, last.edgeStrainMean, now.seen, options_.trade) > kAccuracy;
+  if (!enough && !(now.rests() && now.isWeighed())) return Termination::NotRun;
   const bool kept = last.areaErrorMean <= options_.areaTolerance;
-  if (!kept || !(enough || (now.rests() && now.isWeighed()))) return Termination::NotRun;
+  if (!kept && (enough || reached || !areasAreHeld(history, options_.areaTolerance))) {
+    return Termination::NotRun;
+  }
   if (target) return reached ? Termination::TargetReached : Termination::Stalled;
   return Termination::Converged;
 }
@@ -144,7 +159,7 @@ void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {
 Termination Continuation::next(Unfolder& unfolder,
                                const std::vector<IterationRecord>& history) const {
   const Outlook now = outlook(unfolder, history);
-  const Termination end = endOf(unfolder, now);
+  const Termination end = endOf(unfolder, history, now);
   if (end != Termination::NotRun) return end;
   if (static_cast<int>(history.size()) > options_.maxIterations) return Termination::MaxIterations;
   steer(unfolder, now);

@@ -32,13 +32,6 @@ constexpr double kCollarShare = 0.6;
 
 void requireUsable(const UnfolderOptions& options, const Region& region) {
   if (!(options.contactRange > 0)) throw InvalidInput("contactRange: must be positive");
-  if (!(options.yieldStrain > 0)) throw InvalidInput("yield-strain: must be positive");
-  if (options.timeStep && !(*options.timeStep > 0)) {
-    throw InvalidInput("time-step: must be positive");
-  }
-  if (options.collarWidth && !(*options.collarWidth > 0)) {
-    throw InvalidInput("collar-width: must be positive");
-  }
   if (region.faces.empty()) throw InvalidInput("region: has no face");
 }
 
@@ -77,7 +70,8 @@ std::vector<std::int32_t> collarFaces(const PatchSetup& s) {
 }
 
 /// The region's area and mean edge.
-void measureRegion(PatchSetup& s, const Eigen::VectorXd& areas) {
+void measureRegion(PatchSetup& s) {
+  const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
   double edgeSum = 0;
   for (const std::int32_t f : s.region.faces) {
     if (!(areas[f] > 0)) {
@@ -111,9 +105,23 @@ void chooseMoving(PatchSetup& s, const visibility::Viewpoints& viewpoints,
   s.collar = collarFaces(s);
 }
 
+/// What moves, of which nothing is listed yet.
+PatchSetup begin(TriangleMesh mesh, Region region, const visibility::Viewpoints& viewpoints,
+                 const UnfolderOptions& options) {
+  PatchSetup s;
+  s.mesh = std::move(mesh);
+  s.region = std::move(region);
+  if (options.surround == Surround::None) isolate(s.mesh, s.region);
+  s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
+  measureRegion(s);
+  chooseMoving(s, viewpoints, options);
+  return s;
+}
+
 /// Faces of an elastic collar hold back when they stretch far; a single ring beside fixed
 /// surroundings has no other way to follow.
-void listFaces(PatchSetup& s, const Eigen::VectorXd& areas) {
+void listFaces(PatchSetup& s) {
+  const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
   const double mean = s.area / static_cast<double>(s.region.faces.size());
   const double needle = kNeedleShare * mean;
   const auto list = [&](std::int32_t f) {
@@ -180,12 +188,7 @@ std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
                               const UnfolderOptions& options) {
   requireUsable(options, region);
   if (options.surround == Surround::None) return markedOf(mesh.faceCount(), region.faces);
-  PatchSetup s;
-  s.mesh = mesh;
-  s.region = region;
-  s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
-  measureRegion(s, geometry::faceAreas(s.mesh));
-  chooseMoving(s, viewpoints, options);
+  const PatchSetup s = begin(mesh, region, viewpoints, options);
   std::vector<bool> moves = markedOf(mesh.faceCount(), region.faces);
   for (const std::int32_t f : s.collar) moves[f] = true;
   return moves;
@@ -194,15 +197,8 @@ std::vector<bool> movingFaces(const TriangleMesh& mesh, const Region& region,
 PatchSetup setUpPatch(TriangleMesh mesh, Region region, const visibility::Viewpoints& viewpoints,
                       const UnfolderOptions& options) {
   requireUsable(options, region);
-  PatchSetup s;
-  s.mesh = std::move(mesh);
-  s.region = std::move(region);
-  if (options.surround == Surround::None) isolate(s.mesh, s.region);
-  s.topology = geometry::buildTopology(s.mesh.faces, s.mesh.vertexCount());
-  const Eigen::VectorXd areas = geometry::faceAreas(s.mesh);
-  measureRegion(s, areas);
-  chooseMoving(s, viewpoints, options);
-  listFaces(s, areas);
+  PatchSetup s = begin(std::move(mesh), std::move(region), viewpoints, options);
+  listFaces(s);
   listSprings(s);
   if (isGuided(s, options)) s.patch.guide = makeGuide(s.mesh, s.region, s.patch.room);
   s.patch.yieldStrain = options.yieldStrain;

@@ -126,16 +126,14 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
   if (options.center && options.vertex) {
     throw InvalidInput("region: both a centre point and a vertex are given; give one");
   }
-  std::int32_t centre = -1;
-  if (options.vertex) {
-    centre = *options.vertex;
-    if (centre < 0 || centre >= mesh.vertexCount()) {
-      throw InvalidInput("vertex: " + std::to_string(centre) +
-                         " is none of the surface's vertices 0 to " +
-                         std::to_string(mesh.vertexCount() - 1));
-    }
-  } else {
-    if (!options.center->allFinite()) throw InvalidInput("center: not a finite point");
+  std::int32_t centre = options.vertex.value_or(-1);
+  if (options.vertex && (centre < 0 || centre >= mesh.vertexCount())) {
+    throw InvalidInput("vertex: " + std::to_string(centre) +
+                       " is none of the surface's vertices 0 to " +
+                       std::to_string(mesh.vertexCount() - 1));
+  }
+  if (options.center && !options.center->allFinite()) {
+    throw InvalidInput("center: not a finite point");
   }
   const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   if (options.vertex && topology.vertexFaces[centre].empty()) {
@@ -164,16 +162,11 @@ Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
     }
     const Vector axis = (middle - eye).normalized();
     const double least = std::cos(*options.cone * kPi / 180);
-    for (std::size_t v = 0; v < within.size(); ++v) {
-      const Vector ray = mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - eye;
-      within[v] = ray.dot(axis) >= least * ray.norm();
-    }
-    if (std::isfinite(options.radius)) {
+    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+      const Vector ray = mesh.positions.row(v).transpose() - eye;
       // A narrow cone from afar pierces the whole surface; the radius keeps it on the near side.
-      for (std::size_t v = 0; v < within.size(); ++v) {
-        const Vector off = mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - middle;
-        within[v] = within[v] && std::abs(off.dot(axis)) <= options.radius;
-      }
+      const double beyond = std::abs((mesh.positions.row(v).transpose() - middle).dot(axis));
+      within[v] = ray.dot(axis) >= least * ray.norm() && !(beyond > options.radius);
     }
   } else {
     if (!(options.radius > 0) || !std::isfinite(options.radius)) {

@@ -35,26 +35,25 @@ bool Unfolder::Implementation::thesisStep() {
   }
   if (options.keepAreas) {
     const PhaseClock clock(now.phases.solve);
-    now.solves = keepAreas(setup.patch, x, setup.unknown, velocity).iterations;
+    now.solves = keepAreas(setup.patch, x, setup.unknown, velocity);
   }
   const double fastest = std::sqrt(velocity.rowwise().squaredNorm().maxCoeff());
   if (!(fastest > 0)) {
     state.stalled = true;
     return false;
   }
-  constexpr double kAdaptiveMove = 0.05;  // mean edge lengths: about as far as areas stay linear
-  const double timeStep = options.timeStep.value_or(kAdaptiveMove * setup.edge / fastest);
-  now.step = timeStep;
-  now.largestMove = timeStep * fastest;
+  constexpr double kMove = 0.05;  // mean edge lengths: about as far as areas stay linear
+  now.largestMove = kMove * setup.edge;
+  now.step = now.largestMove / fastest;
   now.energies[Term::Visibility] = average.area * (1 - average.value);
   now.objectiveBefore = now.energies.sum();
-  state.positions += timeStep * velocity;
+  state.positions += now.step * velocity;
   state.iteration = now.iteration;
   contacts.forget();
   measure(now);
   now.objectiveAfter = kNaN;  // a flow: no search along the line
   record = now;
-  if (!state.positions.allFinite()) throw InvalidInput("time-step: too large, the flow diverged");
+  if (!state.positions.allFinite()) throw InvalidInput("knot-weight: too large, the flow diverged");
   return true;
 }
 

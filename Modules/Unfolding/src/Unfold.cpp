@@ -129,6 +129,10 @@ void sayWhatIsShort(const UnfoldOptions& options, const IterationRecord& kept, d
         "edges are strained by %.2f %% in the mean, %.2f %% beyond their goal of %g %%",
         100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain), 100 * kGoalStrain));
   }
+  if (kept.areaErrorMean > options.areaTolerance) {
+    monitor.warn(printed("areas are off by %.2f %% in the mean, where %.2f %% counts as kept",
+                         100 * kept.areaErrorMean, 100 * options.areaTolerance));
+  }
 }
 
 /// What the result is not, of the state that is kept.
@@ -146,7 +150,7 @@ Flag flagOf(const UnfoldOptions& options, const UnfoldResult& result, const Iter
     return Flag::Stretched;
   }
   const bool met = meetsGoals(goalOf(options), kept.visibility, seen, kept.edgeStrainMean);
-  return met ? Flag::None : Flag::Held;
+  return met && kept.areaErrorMean <= options.areaTolerance ? Flag::None : Flag::Held;
 }
 
 /// Says what a user must know about the result, and does not call it what it is not.
@@ -155,11 +159,6 @@ void judge(const UnfoldOptions& options, double seen, const Monitor& monitor,
            UnfoldResult& result) {
   const IterationRecord& kept = result.history[static_cast<std::size_t>(result.iteration)];
   const IterationRecord& last = result.history.back();
-  if (result.termination == Termination::TargetReached &&
-      last.areaErrorMean > options.areaTolerance) {
-    monitor.warn("the visibility is reached, but the mean area error stays at " +
-                 std::to_string(last.areaErrorMean));
-  }
   if (result.iteration != last.iteration) {
     monitor.warn(
         printed("the run ended at a visibility of %.3f, worse than the best state seen; that one, "

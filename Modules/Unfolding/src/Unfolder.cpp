@@ -223,12 +223,5 @@ void Unfolder::setDirections(Positions directions) {
   self_->state.directions = std::move(directions);
   self_->measure(self_->record);
 }
-void Unfolder::setWeights(const UnfoldWeights& weights) {
-  self_->options.weights = weights;
-  self_->state.areaStiffness = std::max(self_->state.areaStiffness, weights[Term::Area]);
-}
-const UnfoldWeights& Unfolder::weights() const {
-  return self_->options.weights;
-}
 
 }  // namespace explica::unfolding

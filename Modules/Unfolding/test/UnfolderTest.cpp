@@ -422,7 +422,8 @@ TEST(Unfold, ARunThatNeverGetsBetterGivesBackItsStartAndSaysSo) {
   UnfoldOptions options;
   options.unfolder.method = Method::Thesis;
   options.unfolder.surround = Surround::Fixed;
-  options.unfolder.timeStep = 40;  // far beyond what its first-order steps bear
+  options.unfolder.knot = repulsion::KnotMethod::Tree;
+  options.unfolder.weights[Term::Knot] = -1;  // draws folds together
   options.maxIterations = 3;
   int warnings = 0;
   Monitor monitor;
@@ -492,6 +493,36 @@ TEST(Unfold, AGoalOutOfReachEndsSoonAndSaysSo) {
   EXPECT_EQ(result.termination, Termination::Stalled);
   EXPECT_LT(result.history.size(), 200u);
   EXPECT_GT(result.history.back().visibility, 0.97);
+}
+
+TEST(Unfold, ACollarTooNarrowGivesWayWhichIsSaid) {
+  const TriangleMesh ball = geometry::makeFoldedSphere(4, 30.0);
+  RegionOptions where;
+  where.center = Point(0, 0, 30);
+  where.radius = 20;
+  UnfoldOptions options;
+  options.unfolder.collarWidth = 0.5;
+  const UnfoldResult result =
+      unfold(ball, selectRegion(ball, where), visibility::viewpoint(Point(0, 0, 1000)), options);
+  EXPECT_GT(result.history.back().collarStretchMax, kCollarMost);
+  EXPECT_GT(result.history.back().collarStretchMean, kCollarMean);
+  EXPECT_EQ(result.flag, Flag::Stretched);
+  EXPECT_EQ(result.termination, Termination::Stalled);
+}
+
+TEST(Unfold, AMissedGoalIsSaidThoughAreasAreNeverKept) {
+  const TriangleMesh mesh = makeMeander(kColumns, kRows, 2.1, 3);
+  UnfoldOptions options;
+  options.areaTolerance = 1e-4;
+  options.unfolder.surround = Surround::Fixed;
+  UnfoldResult result;
+  const auto said = warningsOf(mesh, regionOfMarked(mesh, interiorOf(kColumns, kRows, 4)),
+                               visibility::viewpoint(Point(8, 8, 1000)), options, result);
+  EXPECT_EQ(result.termination, Termination::Stalled);
+  EXPECT_EQ(result.flag, Flag::Held);
+  EXPECT_LT(result.history.size(), 200u);
+  ASSERT_FALSE(said.empty());
+  EXPECT_TRUE(said.back().starts_with("areas are off by")) << said.back();
 }
 
 /// The case's sheet and, at the middle of one of the region's faces, the tip of a small fixed face

@@ -238,21 +238,27 @@ std::vector<float> standingOver(const TriangleMesh& mesh, std::span<const std::i
   const Point middle = mesh.corner(listed[0], 0);
   const Occluders occluders(below, middle);
   std::vector<float> over(asked.size());
-  parallelFor(over.size(), kGrain, [&](std::size_t n) {
-    std::array<Point, 3> from;
-    for (int k = 0; k < 3; ++k) {
-      from[k] = (4 * mesh.corner(asked[n], k) + mesh.corner(asked[n], (k + 1) % 3) +
-                 mesh.corner(asked[n], (k + 2) % 3)) /
+  constexpr std::size_t kAtOnce = Occluders::kPacket / 3;  // faces whose rays go together
+  std::array<Vector, 3 * kAtOnce> by;
+  by.fill(-axis);
+  std::array<double, 3 * kAtOnce> length;
+  length.fill(kInfinity);
+  parallelFor((over.size() + kAtOnce - 1) / kAtOnce, kGrain, [&](std::size_t packet) {
+    const std::size_t first = kAtOnce * packet, count = std::min(kAtOnce, over.size() - first);
+    std::array<Point, 3 * kAtOnce> from;
+    for (std::size_t n = 0; n < 3 * count; ++n) {
+      const std::int32_t face = asked[first + n / 3];
+      from[n] = (4 * mesh.corner(face, n % 3) + mesh.corner(face, (n + 1) % 3) +
+                 mesh.corner(face, (n + 2) % 3)) /
                     6 -
                 middle;
     }
-    std::array<Vector, 3> by;
-    by.fill(-axis);
-    std::array<double, 3> length;
-    length.fill(kInfinity);
-    over[n] = 1 - static_cast<float>(
-                      std::popcount(occluders.clear(from, by, length, RTC_INVALID_GEOMETRY_ID))) /
-                      3;
+    const std::uint32_t clear =
+        occluders.clear({from.data(), 3 * count}, {by.data(), 3 * count},
+                        {length.data(), 3 * count}, RTC_INVALID_GEOMETRY_ID);
+    for (std::size_t n = 0; n < count; ++n) {
+      over[first + n] = 1 - static_cast<float>(std::popcount(clear >> (3 * n) & 7U)) / 3;
+    }
   });
   return over;
 }

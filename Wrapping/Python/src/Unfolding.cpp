@@ -103,11 +103,6 @@ class Stepper {
     unfolder_.setViewpoints(std::move(viewpoints));
   }
 
-  void setWeights(const py::kwargs& keywords) {
-    setFromKeywords(provenance::listOptions(options_.weights), keywords);
-    unfolder_.setWeights(options_.weights);
-  }
-
   [[nodiscard]] const Unfolder& unfolder() const { return unfolder_; }
 
  private:
@@ -184,7 +179,6 @@ void bindUnfolding(py::module_& m) {
       "Share of the area of the listed faces that looks away from the viewpoints, in [0, 1].");
 
   noteKeywords<unfolding::UnfolderOptions>(m, "Unfolder");
-  noteKeywords<unfolding::UnfoldWeights>(m, "set_weights");
   py::class_<Stepper>(m, "Unfolder",
                       ("An unfolding advanced one iteration at a time, to be watched and steered." +
                        keywordHelp<unfolding::UnfolderOptions>())
@@ -211,11 +205,7 @@ void bindUnfolding(py::module_& m) {
            "Look from elsewhere, one point or several, RAS mm, from the next step on.")
       .def("set_region", &Stepper::setRegion, "vertices"_a,
            "Unfold another region from the next step on; what moved so far stays where it is, and\n"
-           "areas and lengths to keep are those of the first surface.")
-      .def(
-          "set_weights", [](Stepper& s, const py::kwargs& keywords) { s.setWeights(keywords); },
-          ("Change strengths of the objective's terms." + keywordHelp<unfolding::UnfoldWeights>())
-              .c_str());
+           "areas and lengths to keep are those of the first surface.");
 }
 
 }  // namespace explica::python

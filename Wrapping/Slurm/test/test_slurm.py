@@ -119,7 +119,7 @@ class Slurm(unittest.TestCase):
         study = small_study.make(self.folder)
         # Minutes of work, whatever the machine: goals out of reach.
         study.write_text(study.read_text().replace(
-            "max-iterations: 12", "max-iterations: 100000, area-tolerance: 0.000000001, target-visibility: 1"))
+            "max-iterations: 12", "max-iterations: 100000, knot: thesis-tree, target-visibility: 1"))
         # Slurm counts in minutes and may give the signal up to one of them early.
         array, table = self.submit(study, "--per-task", "4", "--cpus-per-task=2", "--time=1",
                                    "--signal=B:USR1@40")

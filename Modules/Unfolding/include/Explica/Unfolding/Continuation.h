@@ -47,7 +47,8 @@ class Continuation {
   struct Outlook;
   [[nodiscard]] Outlook outlook(Unfolder& unfolder,
                                 const std::vector<IterationRecord>& history) const;
-  [[nodiscard]] Termination endOf(Unfolder& unfolder, const Outlook& now) const;
+  [[nodiscard]] Termination endOf(Unfolder& unfolder, const std::vector<IterationRecord>& history,
+                                  const Outlook& now) const;
   void steer(Unfolder& unfolder, const Outlook& now) const;
 
   UnfoldOptions options_;

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Core/Describe.h"
-
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -80,14 +78,5 @@ struct UnfoldWeights : TermValues {
     for (const TermInfo& info : kTerms) (*this)[info.term] = info.weight;
   }
 };
-
-/// The two that change what comes out by more than the terms' balance evens out again.
-template <class Visitor>
-void describe(UnfoldWeights& weights, Visitor&& visit) {
-  visit(Field{"spring-weight", "",
-              "stiffness of edge lengths at the start; later weighed against visibility"},
-        weights[Term::Spring]);
-  visit(Field{"knot-weight", "", "strength of the knot energy"}, weights[Term::Knot]);
-}
 
 }  // namespace explica::unfolding

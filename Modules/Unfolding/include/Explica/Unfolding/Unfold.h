@@ -47,9 +47,6 @@ void describe(UnfoldOptions& options, Visitor&& visit) {
             "and 9 %) cannot be met, they are missed in this proportion",
             kAboveZero, 1000},
       options.trade);
-  visit(Field{"area-tolerance", "", "mean relative area error of faces that a goal asks for",
-              kAboveZero},
-        options.areaTolerance);
   visit(Field{"max-iterations", "", "iterations at most", 1, kMostIterations},
         options.maxIterations);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,

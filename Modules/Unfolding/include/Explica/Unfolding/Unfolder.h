@@ -48,8 +48,7 @@ struct UnfolderOptions {
   double areaSlack = 0;    ///< relative area error that needs no mending; unfold() sets it, >= 0
   int guideFaces = 30000;  ///< a region alone of so many faces is pulled towards its flat map, >= 0
   repulsion::KnotMethod knot = repulsion::KnotMethod::Off;
-  bool keepAreas = true;           ///< thesis method: project; without it the region shrinks
-  std::optional<double> timeStep;  ///< thesis method: fixed step, mm per mm; else adaptive
+  bool keepAreas = true;  ///< thesis method: project; without it the region shrinks
   UnfoldWeights weights;
 };
 
@@ -59,22 +58,10 @@ void describe(UnfolderOptions& options, Visitor&& visit) {
               "the surface around the region stays, follows with a collar, or is "
               "left out"},
         options.surround);
-  visit(Field{"collar-width", "mm",
-              "how far an elastic collar reaches from the region along the surface (default 0.6 of "
-              "the radius of a disc of the region's area, or of its depth if that is more)",
-              kAboveZero, 1000},
-        options.collarWidth);
-  visit(Field{"yield-strain", "",
-              "strain beyond which a length costs less than its square, so that few edges give way "
-              "where the surface cannot be laid flat otherwise",
-              kAboveZero, 1e6},
-        options.yieldStrain);
   visit(Field{"method", "", "implicit steps, or the thesis's gradient flow as the baseline"},
         options.method);
   visit(Field{"knot", "", "how the repulsive (knot) energy is evaluated"}, options.knot);
-  visit(Field{"time-step", "", "thesis method: fixed step instead of an adaptive one", kAboveZero},
-        options.timeStep);
-  describe(options.weights, visit);
+  visit(Field{"knot-weight", "", "strength of the knot energy"}, options.weights[Term::Knot]);
 }
 
 /// Wall time of an iteration by phase, s.
@@ -223,8 +210,6 @@ class Unfolder {
   /// @param directions  R x 3, at most unit length; no rows: towards the viewpoints
   /// @throws InvalidInput  another number of rows
   void setDirections(Positions directions);
-  void setWeights(const UnfoldWeights& weights);
-  [[nodiscard]] const UnfoldWeights& weights() const;
 
   struct Implementation;  ///< internal
 
