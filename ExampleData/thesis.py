@@ -5,6 +5,7 @@
 import argparse
 import base64
 import html
+import io
 import itertools
 import json
 import math
@@ -14,6 +15,7 @@ import sys
 import time
 from pathlib import Path
 
+import matplotlib.figure
 import nibabel
 import numpy
 
@@ -58,71 +60,23 @@ class Work:
 
 # ---- figures ------------------------------------------------------------------------------------
 
-def svg_chart(series, x_label, y_label, x_log=True, y_log=True, width=560, height=360):
+def chart_of(series, x_label, y_label, y_log=True):
     """Lines with marks; series: list of (name, colour, [(x, y)]).  Infinite x stand at the right."""
-    def scale(values, log, low, high):
-        values = [v for v in values if math.isfinite(v) and (v > 0 or not log)]
-        a, b = min(values), max(values)
-        if log:
-            a, b = math.log10(a), math.log10(b)
-        if a == b:
-            a, b = a - 0.5, b + 0.5
-        pad = 0.06 * (b - a)
-        a, b = a - pad, b + pad
-        def place(v):
-            v = math.log10(max(v, 1e-300)) if log else v
-            return low + (min(max(v, a), b) - a) / (b - a) * (high - low)
-        return place, a, b
-
-    left, right, top, bottom = 70, width - 14, 34, height - 46
-    xs = [x for _, _, points in series for x, _ in points]
-    ys = [y for _, _, points in series for _, y in points]
-    some_infinite = any(math.isinf(x) for x in xs)
-    place_x, x0, x1 = scale(xs, x_log, left, right - (40 if some_infinite else 0))
-    place_y, y0, y1 = scale(ys, y_log, bottom, top)
-    def at_x(x):
-        return right - 10 if math.isinf(x) else place_x(x)
-    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
-             'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="#fff"/>']
-    def ticks(a, b, log):
-        if log:
-            found = [10.0 ** e * m for e in range(math.floor(a), math.ceil(b) + 1) for m in (1, 2, 5)
-                     if a <= math.log10(10.0 ** e * m) <= b]
-            return found if len(found) < 8 else [t for t in found if f"{t:e}"[0] == "1"]
-        step = 10 ** math.floor(math.log10((b - a) / 4))
-        step *= next(m for m in (1, 2, 5, 10) if (b - a) / (step * m) <= 6)
-        return [k * step for k in range(math.ceil(a / step), math.floor(b / step) + 1)]
-    for t in ticks(x0, x1, x_log):
-        parts.append(f'<path d="M{place_x(t):.1f},{top} V{bottom}" stroke="#e4e6e8"/>'
-                     f'<text x="{place_x(t):.1f}" y="{bottom + 16}" text-anchor="middle">{t:g}</text>')
-    if some_infinite:
-        parts.append(f'<text x="{right - 10}" y="{bottom + 16}" text-anchor="middle">∞</text>')
-    for t in ticks(y0, y1, y_log):
-        parts.append(f'<path d="M{left},{place_y(t):.1f} H{right}" stroke="#e4e6e8"/>'
-                     f'<text x="{left - 6}" y="{place_y(t) + 4:.1f}" text-anchor="end">{t:g}</text>')
-    parts.append(f'<path d="M{left},{top} V{bottom} H{right}" fill="none" stroke="#444"/>')
-    parts.append(f'<text x="{(left + right) / 2}" y="{height - 8}" text-anchor="middle">{x_label}</text>')
-    parts.append(f'<text x="14" y="{(top + bottom) / 2}" text-anchor="middle" '
-                 f'transform="rotate(-90 14 {(top + bottom) / 2})">{y_label}</text>')
-    marks = ["circle", "square", "diamond", "triangle"]
-    for s, (name, colour, points) in enumerate(series):
-        points = [(x, y) for x, y in points if math.isfinite(y) and (y > 0 or not y_log)]
-        line = " ".join(f"{at_x(x):.1f},{place_y(y):.1f}" for x, y in points)
-        parts.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="2"/>')
-        def mark(x, y):
-            shape = marks[s % 4]
-            if shape == "circle":
-                return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>'
-            if shape == "square":
-                return f'<rect x="{x - 4:.1f}" y="{y - 4:.1f}" width="8" height="8" fill="{colour}"/>'
-            corners = ((0, -5), (5, 0), (0, 5), (-5, 0)) if shape == "diamond" else ((0, -5), (5, 4), (-5, 4))
-            return ('<polygon points="' + " ".join(f"{x + a:.1f},{y + b:.1f}" for a, b in corners) +
-                    f'" fill="{colour}"/>')
-        for x, y in points:
-            parts.append(mark(at_x(x), place_y(y)))
-        x = left + 10 + s * (right - left) / len(series)
-        parts.append(mark(x, 14) + f'<text x="{x + 10:.1f}" y="18">{html.escape(name)}</text>')
-    return "".join(parts) + "</svg>"
+    figure = matplotlib.figure.Figure(figsize=(5.6, 3.6), layout="tight")
+    axes = figure.subplots()
+    axes.set(xscale="log", yscale="log" if y_log else "linear", xlabel=x_label, ylabel=y_label)
+    finite = [x for _, _, points in series for x, _ in points if math.isfinite(x)]
+    beyond = 2 * max(finite)
+    for (name, colour, points), mark in zip(series, "osD^"):
+        axes.plot([min(x, beyond) for x, _ in points], [y for _, y in points], f"{mark}-", color=colour, label=name)
+    if any(math.isinf(x) for _, _, points in series for x, _ in points):
+        axes.set_xticks([*sorted(set(finite)), beyond], [*(f"{x:g}" for x in sorted(set(finite))), "∞"])
+        axes.set_xticks([], minor=True)
+    axes.grid(color="#e4e6e8")
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, frameon=False)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format="svg")
+    return f'<img alt="{html.escape(y_label)}" src="data:image/svg+xml;base64,{base64.b64encode(drawn.getvalue()).decode()}">'
 
 
 class Page:
@@ -356,7 +310,7 @@ def appendix_a(work, page):
               + (f"Here the claim that the hybrid saves time does not hold for λ up to {max(slower):g} mm: appendix A took "
                  "longer than following every trajectory." if slower else
                  "Appendix A took less time than following every trajectory at every λ."))
-    chart = lambda key, label, factor: svg_chart(
+    chart = lambda key, label, factor: chart_of(
         [("appendix A", "#c0392b", [(v, factor * r[key]) for v, r in literal.items()]),
          ("ours", "#145ab4", [(v, factor * r[key]) for v, r in ours.items()]),
          ("Lagrangian", "#7a7f85", [(dial[0], factor * pure["lagrangian"][key]),
@@ -732,7 +686,7 @@ def chapter_5_folds(work, page):
                     "the knot energy, by our tree. The energy of two triangles stays "
                     "finite where edges meet edges, so it stops a crossing only if it is heavy beside the flux; where "
                     "surroundings hold the region, a weight that heavy holds it shut. ",
-                svg_chart([(place, colour, points) for (place, points), colour in zip(found.items(), ("#145ab4", "#c0392b"))],
+                chart_of([(place, colour, points) for (place, points), colour in zip(found.items(), ("#145ab4", "#c0392b"))],
                           "weight of the knot energy", "visibility without a crossing", y_log=False),
                 command=work.commands["flow-none-0.01"])
     page.number("flow_limit_none", "the thesis's flow in space, region alone: best visibility without a crossing over "

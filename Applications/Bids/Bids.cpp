@@ -178,9 +178,8 @@ Ended doHemisphere(Context& context, const BidsSettings& s, const study::Partici
         study::keyOf({participant, {{name, hemisphere, "", values}}}, studyPathOptions());
     if (s.keep == Keep::Group && !dry && isKept(folder, key)) return ended;
     const std::string other = hemisphere == "L" ? "R" : "L";
-    if (!dry) {  // a T1's segmentation is the same for both hemispheres
-      shareSteps(folder.parent_path() / (participant.name() + "_hemi-" + other), folder,
-                 {"segment"});
+    if (!dry) {
+      shareSteps(folder.parent_path() / (participant.name() + "_hemi-" + other), folder, false);
     }
     const Outcome outcome = context.runCommand(*findCommand("run"), "runs/" + name, values);
     if (!reachedGoal(outcome.termination)) worst = outcome.termination;
@@ -270,11 +269,7 @@ void writeExports(Context& context) {
 Termination doGroup(Context& context, const BidsSettings& s) {
   const fs::path out = context.outputFolder();
   auto rows = study::collectRows(out);
-  const std::string part = writeGroup(context, s.group, study::aboutParticipants(s.dataset), rows);
-  writeTextFile(context.output("study.tsv"), study::tableText(rows));
-  writeTextFile(context.output("study_regions.tsv"), study::regionsText(rows));
-  writeTextFile(context.output("study_internals.tsv"), study::internalsText(rows));
-  writeTextFile(context.output("index.html"), study::indexPage(rows, "Explica study", part));
+  writeStudy(context, s.group, study::aboutParticipants(s.dataset), rows, "Explica study");
   writeExports(context);
   context.result("rows", rows.size());
   return Termination::NotRun;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/IO/CiftiFile.h"
+#include "Explica/IO/VertexFile.h"
 
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Errors.h"
@@ -50,21 +51,10 @@ struct CiftiSide {
   std::optional<std::string> data, cortex;
 };
 
-bool isLabelFile(const std::string& path) {
-  return path.ends_with(".label.gii") || path.ends_with(".annot") ||
-         path.ends_with(".label.gii.gz");
-}
-
 io::CiftiStructure cortexOf(const CiftiSide& side, Eigen::Index vertexCount) {
-  if (!side.cortex) {
-    return io::ciftiStructure(side.structure, Eigen::VectorXd::Ones(vertexCount));
-  }
-  if (isLabelFile(*side.cortex) || side.cortex->ends_with(".label")) {
-    return io::ciftiStructure(side.structure,
-                              io::readVertexLabels(*side.cortex, vertexCount).keys.cast<double>());
-  }
-  return io::ciftiStructure(side.structure,
-                            io::readVertexMaps(*side.cortex, vertexCount).front().values);
+  return io::ciftiStructure(side.structure, side.cortex
+                                                ? io::readVertexNumbers(*side.cortex, vertexCount)
+                                                : Eigen::VectorXd::Ones(vertexCount));
 }
 
 /// Labels of the side; FreeSurfer's annots number both hemispheres alike, which is right where the
@@ -97,9 +87,9 @@ Termination run(Context& context, const CiftiSettings& s) {
     throw UsageError("--name must be the name of a file, without folders");
   }
   if (s.seconds && !(*s.seconds > 0)) throw UsageError("--seconds must be positive");
-  const bool labels = isLabelFile(*sides.front().data);
+  const bool labels = io::namesLabels(*sides.front().data);
   for (const CiftiSide& side : sides) {
-    if (isLabelFile(*side.data) != labels) {
+    if (io::namesLabels(*side.data) != labels) {
       throw UsageError(
           "one hemisphere has labels and the other one maps; two of a kind are needed");
     }

@@ -9,6 +9,7 @@
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VertexFile.h"
 #include "Explica/Pipeline/FlatMarks.h"
 #include "Explica/Report/Panels.h"
 #include "ShownSurface.h"
@@ -118,7 +119,7 @@ bool fits(const Shown& shown, const std::optional<Hemisphere>& side, Eigen::Inde
 /// Gives vertex data to the surfaces that they fit.
 void give(const std::string& file, std::vector<Shown>& all) {
   const auto side = io::statedHemisphere(file);
-  const bool labels = isLabelFile(file);
+  const bool labels = io::namesLabels(file);
   const Eigen::Index count = labels ? io::readVertexLabels(file).keys.size()
                                     : io::readVertexMaps(file).front().values.size();
   bool given = false;
@@ -149,7 +150,7 @@ std::vector<Shown> readFiles(const FigureSettings& s) {
   for (const std::string& file : s.files) {
     std::optional<io::LoadedSurface> loaded;
     try {
-      if (!isLabelFile(file)) loaded = io::readSurface(file, s.reading);
+      if (!io::namesLabels(file)) loaded = io::readSurface(file, s.reading);
     } catch (const Error&) {
       // No surface: vertex data, whose own fault is said then.
     }

@@ -9,6 +9,7 @@
 #include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VertexFile.h"
 
 #include <fnmatch.h>
 
@@ -147,11 +148,7 @@ void readMask(const GlmSettings& s, Observations& o) {
   o.mask.assign(static_cast<std::size_t>(o.places), true);
   for (std::size_t h = 0; h < s.masks.size(); ++h) {
     const Hemisphere& side = o.hemispheres[h];
-    const bool labels = s.masks[h].ends_with(".label") || s.masks[h].ends_with(".annot") ||
-                        s.masks[h].ends_with(".label.gii");
-    const Eigen::VectorXd inside =
-        labels ? Eigen::VectorXd(io::readVertexLabels(s.masks[h], side.count).keys.cast<double>())
-               : io::readVertexMaps(s.masks[h], side.count).front().values;
+    const Eigen::VectorXd inside = io::readVertexNumbers(s.masks[h], side.count);
     for (Eigen::Index v = 0; v < side.count; ++v) {
       o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;
     }

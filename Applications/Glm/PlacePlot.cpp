@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Core/Html.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Provenance/Json.h"
 #include "Plots.h"
@@ -171,11 +172,7 @@ constexpr const char* kScript = R"js(</script>
 }  // namespace
 
 std::string placePlot(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values) {
-  std::string json = provenance::textOf(dataOf(o, r, values));
-  for (auto at = json.find('<'); at != std::string::npos; at = json.find('<', at)) {
-    json.replace(at, 1, "\\u003c");
-  }
-  return kSection + json + kScript;
+  return kSection + scriptSafe(provenance::textOf(dataOf(o, r, values))) + kScript;
 }
 
 }  // namespace explica::app

@@ -17,7 +17,6 @@
 #include "Explica/Planar/Summary.h"
 #include "Explica/Visibility/Viewpoints.h"
 #include "Settings.h"
-#include "State.h"
 
 #include <cmath>
 
@@ -161,7 +160,7 @@ void writeUnfolding(Context& context, const PolygonSettings& s,
   }
   io::writePolygonVtp(context.output("unfolded.vtp"), result.curve.positions, {}, edgeMaps);
   writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
-  writeTextFile(context.output(kPolygonState), textOf(result.checkpoint));
+  planar::writeCheckpoint(context.output(kPolygonState), result.checkpoint);
   writeStages(context, s, result, view);
 }
 
@@ -198,7 +197,7 @@ Termination run(Context& context, const PolygonSettings& s) {
   std::optional<planar::PolygonCheckpoint> state;
   if (s.resume) {
     if (!view) throw UsageError("--resume needs the viewpoint of the first run");
-    state = readState(context.outputFolder() / kPolygonState);
+    state = planar::readCheckpoint(context.outputFolder() / kPolygonState);
   }
 
   reportPolygon(context, task);

@@ -5,11 +5,11 @@
 #include "Explica/Sphere/Summary.h"
 
 #include "Explica/Application/Command.h"
+#include "Explica/Application/FoldingFiles.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
-#include "Folding.h"
 
 namespace explica::app {
 namespace {
@@ -50,9 +50,9 @@ void declare(Declaration& d, RegisterSettings& s) {
                    s.toCurvature, "Target")
       .option("Target", Field{"mirror", "", "register to the other hemisphere, mirrored"}, s.mirror)
       .options("Registration", s.registration)
-      .ofAnother("to")
-      .ofAnother("to-sulc")
-      .ofAnother("to-curvature")
+      .ofAnother("to", s.mirror)
+      .ofAnother("to-sulc", s.mirror)
+      .ofAnother("to-curvature", s.mirror)
       .excludes("to", {"template"})
       .needs({"to-sulc", "to-curvature"}, {"to"})
       .output("sphere.reg.surf.gii", FileKind::Surface, "the sphere in the template's frame")

@@ -4,6 +4,7 @@
 #include "Settings.h"
 
 #include "Explica/Pipeline/RunState.h"
+#include "Explica/Study/Derivatives.h"
 
 namespace explica::app {
 
@@ -56,7 +57,7 @@ void declareRun(Declaration& d, RunSettings& s) {
       .output("unfold*", FileKind::Folder, "the unfolded patch and its evolution")
       .output("asymmetry.tsv", FileKind::Table,
               "of both hemispheres: thickness and area of each region, left and right");
-  for (const char* name : kStepCommands) {
+  for (const char* name : study::kRunSteps) {
     const Command* command = findCommand(name);
     if (command == nullptr) continue;
     s.steps.push_back(command->begin());

@@ -22,6 +22,7 @@
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
 #include "Explica/Report/Page.h"
+#include "Explica/Study/Derivatives.h"
 
 #include <nlohmann/json.hpp>
 
@@ -204,7 +205,7 @@ pipeline::Plan planOrTakeBack(Context& context, const RunSettings& s) {
     return pipeline::planRun(s.input, context.outputFolder(), s.atlas, options);
   } catch (const Error&) {
     if (s.resume) {
-      for (const std::string step : kStepCommands) {
+      for (const std::string step : study::kRunSteps) {
         for (const char* ending : {"", "-L", "-R"}) context.dropCommand(step + ending);
       }
     }

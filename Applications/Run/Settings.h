@@ -12,10 +12,6 @@
 
 namespace explica::app {
 
-inline constexpr std::array kStepCommands = {"segment",    "thickness", "surface",
-                                             "sphere",     "register",  "resample",
-                                             "parcellate", "regions",   "unfold"};
-
 /// What `explica run` is asked for.
 struct RunSettings {
   std::string input;

@@ -54,14 +54,8 @@ void declare(Declaration& d, SmoothSettings& s) {
 /// Vertices to smooth: where the mask's first map or label is not 0.
 std::vector<bool> maskOf(const std::optional<std::string>& path, Eigen::Index vertexCount) {
   if (!path) return {};
-  const bool labels = io::vertexFileKind(*path) == io::VertexFileKind::Labels;
-  const Eigen::VectorXd values = labels
-                                     ? io::readVertexLabels(*path, vertexCount).keys.cast<double>()
-                                     : io::readVertexMaps(*path, vertexCount).front().values;
-  std::vector<bool> mask(static_cast<std::size_t>(vertexCount));
-  for (std::size_t v = 0; v < mask.size(); ++v) {
-    mask[v] = values[static_cast<Eigen::Index>(v)] != 0;
-  }
+  std::vector<bool> mask;
+  for (const double value : io::readVertexNumbers(*path, vertexCount)) mask.push_back(value != 0);
   return mask;
 }
 

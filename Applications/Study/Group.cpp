@@ -4,9 +4,7 @@
 #include "Explica/Application/Command.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
-#include "Explica/Core/WholeFile.h"
 #include "Explica/Study/HeartStudy.h"
-#include "Explica/Study/StudyPage.h"
 #include "Explica/Study/StudyTable.h"
 #include "GroupStage.h"
 #include "StudyInput.h"
@@ -99,11 +97,7 @@ Termination run(Context& context, const StudyGroupSettings& s) {
   const study::Study study = study::planStudy(file, studyPathOptions());
   const AboutPeople about = aboutOf(file);
   std::vector<study::StudyRow> rows = rowsOf(study, s.out);
-  const std::string part = writeGroup(context, groupOf(context, file, s.group), about, rows);
-  writeTextFile(context.output("study.tsv"), study::tableText(rows));
-  writeTextFile(context.output("study_regions.tsv"), study::regionsText(rows));
-  writeTextFile(context.output("study_internals.tsv"), study::internalsText(rows));
-  writeTextFile(context.output("index.html"), study::indexPage(rows, study.name, part));
+  writeStudy(context, groupOf(context, file, s.group), about, rows, study.name);
   std::map<std::string, int> states;
   for (const study::StudyRow& row : rows)
     ++states[row.state.substr(0, row.state.find_first_of(" :("))];

@@ -10,6 +10,8 @@
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Json.h"
+#include "Explica/Study/StudyPage.h"
+#include "Explica/Study/StudyTable.h"
 #include "GroupParts.h"
 
 #include <algorithm>
@@ -177,38 +179,7 @@ std::string pagePart(const GroupSummary& group, const std::vector<GroupSide>& si
   return html + "</section>\n";
 }
 
-}  // namespace
-
-void describe(Results& t, const GroupSummary& g) {
-  t.count("hemispheres_in_group", "Hemispheres in the group", "Those that the means are of.",
-          static_cast<std::int64_t>(g.in.size()))
-      .inHead();
-  t.count("hemispheres_left_out", "Hemispheres left out",
-          "Failed, doubted and not included by name, or not on the template.",
-          static_cast<std::int64_t>(g.out.size()))
-      .inHead();
-  t.words("left_out", "Who is left out", "With the reason.", g.out);
-  t.text("space", "Space and density", "Of the group's maps.", g.space);
-}
-
-void declareGroup(Declaration& d, GroupSettings& s) {
-  d.option(
-       "Group",
-       Field{"include", "", "people who count although their run is doubted, with or without sub-"},
-       s.include)
-      .option("Group",
-              Field{"model", "",
-                    "formula as of glm, with the columns of participants.tsv: fitted to the "
-                    "smoothed thickness, into group/glm"},
-              s.model)
-      .option("Group", Field{"fwhm", "mm", "smoothing of the maps for --model", kAboveZero, 100},
-              s.fwhm)
-      .results<GroupSummary>()
-      .output("group/*", FileKind::Any,
-              "means, deviations and z-maps on the template, tables of people and regions")
-      .output("group/glm", FileKind::Folder, "with --model: what `explica glm` writes");
-}
-
+/// The group, and a part of the study's page.
 std::string writeGroup(Context& context, const GroupSettings& s, const AboutPeople& about,
                        std::vector<study::StudyRow>& rows) {
   std::vector<Member> members = membersOf(context.outputFolder(), s, rows);
@@ -249,6 +220,47 @@ std::string writeGroup(Context& context, const GroupSettings& s, const AboutPeop
   context.results(summary);
   for (const std::string& one : summary.out) context.warn("left out of the group: " + one);
   return pagePart(summary, sides, s.model.has_value());
+}
+
+}  // namespace
+
+void describe(Results& t, const GroupSummary& g) {
+  t.count("hemispheres_in_group", "Hemispheres in the group", "Those that the means are of.",
+          static_cast<std::int64_t>(g.in.size()))
+      .inHead();
+  t.count("hemispheres_left_out", "Hemispheres left out",
+          "Failed, doubted and not included by name, or not on the template.",
+          static_cast<std::int64_t>(g.out.size()))
+      .inHead();
+  t.words("left_out", "Who is left out", "With the reason.", g.out);
+  t.text("space", "Space and density", "Of the group's maps.", g.space);
+}
+
+void declareGroup(Declaration& d, GroupSettings& s) {
+  d.option(
+       "Group",
+       Field{"include", "", "people who count although their run is doubted, with or without sub-"},
+       s.include)
+      .option("Group",
+              Field{"model", "",
+                    "formula as of glm, with the columns of participants.tsv: fitted to the "
+                    "smoothed thickness, into group/glm"},
+              s.model)
+      .option("Group", Field{"fwhm", "mm", "smoothing of the maps for --model", kAboveZero, 100},
+              s.fwhm)
+      .results<GroupSummary>()
+      .output("group/*", FileKind::Any,
+              "means, deviations and z-maps on the template, tables of people and regions")
+      .output("group/glm", FileKind::Folder, "with --model: what `explica glm` writes");
+}
+
+void writeStudy(Context& context, const GroupSettings& settings, const AboutPeople& about,
+                std::vector<study::StudyRow>& rows, const std::string& title) {
+  const std::string part = writeGroup(context, settings, about, rows);
+  writeTextFile(context.output("study.tsv"), study::tableText(rows));
+  writeTextFile(context.output("study_regions.tsv"), study::regionsText(rows));
+  writeTextFile(context.output("study_internals.tsv"), study::internalsText(rows));
+  writeTextFile(context.output("index.html"), study::indexPage(rows, title, part));
 }
 
 }  // namespace explica::app

@@ -35,11 +35,11 @@ void declareGroup(Declaration& d, GroupSettings& s);
 /// People on their template, together: writes below `group/` mean, deviation and variation of
 /// thickness, sulcal depth and area at every vertex, each person's z-maps, tables of people and of
 /// their regions with what is known of them, a picture, and the results of a model.  The rows get
-/// each person's distance from the group and what is known of the person.
-/// @return a part of the study's page, as HTML
+/// each person's distance from the group and what is known of the person.  Then writes the study's
+/// tables and page.
 /// @throws InvalidInput  names a person whose maps have another template or density, or whom
 ///                       --include names and who is not there
-[[nodiscard]] std::string writeGroup(Context& context, const GroupSettings& settings,
-                                     const AboutPeople& about, std::vector<study::StudyRow>& rows);
+void writeStudy(Context& context, const GroupSettings& settings, const AboutPeople& about,
+                std::vector<study::StudyRow>& rows, const std::string& title);
 
 }  // namespace explica::app

@@ -7,6 +7,7 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
+#include "Explica/Study/Derivatives.h"
 #include "Explica/Study/StudyTable.h"
 #include "GroupParts.h"
 
@@ -85,9 +86,10 @@ void keepForGroup(const fs::path& run, const std::string& key) {
   }
 }
 
-void shareSteps(const fs::path& made, const fs::path& run, const std::vector<std::string>& steps) {
+void shareSteps(const fs::path& made, const fs::path& run, bool sameHemisphere) {
   std::error_code fault;
-  for (const std::string& step : steps) {
+  for (const std::string step : study::kRunSteps) {
+    if (step == (sameHemisphere ? "unfold" : "thickness")) break;
     if (!isThere(made / step / provenance::kRecordName) || isThere(run / step)) continue;
     fs::create_directories(run, fault);
     fs::copy(made / step, run / step,

@@ -33,10 +33,11 @@ void keepForGroup(const std::filesystem::path& run, const std::string& key);
 /// True if keepForGroup() was done with this key.
 [[nodiscard]] bool isKept(const std::filesystem::path& run, const std::string& key);
 
-/// Links those steps that another run has made and this one has not; the run finds them true by
-/// their content, or makes its own.
+/// Links those steps that another run of a person has made and this one has not; the run finds them
+/// true by their content, or makes its own.  Of the same hemisphere those before the unfolding are
+/// the same, of the other one a T1's segmentation is.
 void shareSteps(const std::filesystem::path& made, const std::filesystem::path& run,
-                const std::vector<std::string>& steps);
+                bool sameHemisphere);
 
 /// The maps on the template that a run has: the measure's own file, or the one for all of them.
 struct TemplateMaps {

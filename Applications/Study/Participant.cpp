@@ -137,12 +137,10 @@ Termination run(Context& context, const StudyParticipantSettings& s) {
         break;
       }
       const fs::path folder = folderOf(s, run);
-      if (!dry && first.count(run.hemisphere)) {  // steps before unfolding are the same
-        shareSteps(first[run.hemisphere], folder,
-                   {"segment", "thickness", "surface", "sphere", "register", "resample",
-                    "parcellate", "regions"});
-      } else if (!dry && !first.empty()) {  // a T1's segmentation is the same for both hemispheres
-        shareSteps(first.begin()->second, folder, {"segment"});
+      if (!dry && !first.empty()) {
+        const auto same = first.find(run.hemisphere);
+        shareSteps((same != first.end() ? same : first.begin())->second, folder,
+                   same != first.end());
       }
       settled = doRun(context, folder, subject.participant, run, account) && settled;
       first.emplace(run.hemisphere, folder);

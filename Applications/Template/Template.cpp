@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/CortexTemplate.h"
+#include "Explica/Application/FoldingFiles.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
@@ -13,7 +14,6 @@
 #include "Explica/Maps/Icosphere.h"
 #include "Explica/Maps/Parcellation.h"
 #include "Explica/Sphere/Average.h"
-#include "Folding.h"
 
 #include <algorithm>
 #include <array>

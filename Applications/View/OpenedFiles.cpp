@@ -5,6 +5,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VertexFile.h"
 #include "OpenedFolders.h"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) 
                        "' is a volume: --screenshot draws its slices with surfaces, explica sample "
                        "puts its values on a surface");
   }
-  if (isLabelFile(path)) {
+  if (io::namesLabels(path)) {
     opened.labels.push_back(windowLabels(surface, path));
     opened.what = name + ": " + counted(opened.labels[0].names.size(), "label");
   } else {

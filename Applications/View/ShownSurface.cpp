@@ -4,7 +4,6 @@
 #include "Explica/Core/Folders.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
 namespace explica::app {
@@ -51,13 +50,6 @@ void restrict(const ShownSurface& surface, Values& values) {
 }
 
 }  // namespace
-
-bool isLabelFile(const fs::path& file) {
-  const std::string name = file.filename().string();
-  constexpr std::array kEndings = {".label.gii", ".annot", ".label"};
-  return std::any_of(kEndings.begin(), kEndings.end(),
-                     [&](const char* ending) { return name.ends_with(ending); });
-}
 
 std::vector<io::VertexMap> readMapsOn(const ShownSurface& surface, const fs::path& file) {
   std::vector<io::VertexMap> maps = io::readVertexMaps(file);

@@ -34,7 +34,4 @@ struct ShownSurface {
 [[nodiscard]] io::LabelMap readLabelsOn(const ShownSurface& surface,
                                         const std::filesystem::path& file);
 
-/// True if a file's name is that of labels: .label.gii, .annot, .label.
-[[nodiscard]] bool isLabelFile(const std::filesystem::path& file);
-
 }  // namespace explica::app

@@ -15,6 +15,7 @@
 #include "Explica/Core/Text.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
+#include "Explica/IO/VertexFile.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Figure.h"
@@ -124,7 +125,7 @@ report::SurfacePaint readPaint(const ViewSettings& s, const ShownSurface& surfac
     throw UsageError("a picture shows --map or --labels: leave one of them out");
   }
   report::SurfacePaint paint;
-  if (s.map && isLabelFile(*s.map)) {
+  if (s.map && io::namesLabels(*s.map)) {
     paintLabels(surface, *s.map, paint);
   } else if (s.map) {
     const auto maps = readMapsOn(surface, *s.map);

@@ -76,8 +76,8 @@ Declaration& Declaration::ofSide(std::string_view wanted, Hemisphere side) {
   return *this;
 }
 
-Declaration& Declaration::ofAnother(std::string_view wanted) {
-  get(wanted).ofAnother = true;
+Declaration& Declaration::ofAnother(std::string_view wanted, const bool& mirrored) {
+  get(wanted).ofAnother = &mirrored;
   return *this;
 }
 

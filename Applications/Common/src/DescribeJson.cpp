@@ -59,7 +59,7 @@ Json describeJson(const Declaration& d) {
     entry["file"] = p.file ? Json(nameOf(*p.file)) : Json(nullptr);
     entry["side"] = p.side ? Json(nameOf(*p.side)) : Json(nullptr);
     entry["one_by_one"] = p.oneByOne;
-    entry["of_another"] = p.ofAnother;
+    entry["of_another"] = p.ofAnother != nullptr;
     entry["excludes"] = p.excludes;
     entry["needs"] = p.needs;
     entry["choices"] = p.option.choices();

@@ -6,6 +6,7 @@
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Record.h"
+#include "Explica/Study/Derivatives.h"
 
 #include <set>
 
@@ -46,8 +47,7 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
 }
 
 void dropSteps(Context& context, const std::string& run) {
-  for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
-                           "parcellate", "regions", "unfold"}) {
+  for (const char* step : study::kRunSteps) {
     for (const char* ending : {"", "-L", "-R"}) context.dropCommand(run + "/" + step + ending);
   }
 }

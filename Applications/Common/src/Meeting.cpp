@@ -27,8 +27,9 @@ bool isVertexData(const Parameter* p) {
   return p && p->file && (*p->file == FileKind::VertexData || *p->file == FileKind::VertexLabel);
 }
 
-bool isOfAnother(const Parameter* p) {
-  return p && p->ofAnother;
+/// Whether a file is another person's, and may then be of any side; null of the person's own.
+const bool* ofAnother(const Parameter* p) {
+  return p ? p->ofAnother : nullptr;
 }
 
 /// Whether a name is one of a surface's; FreeSurfer's (lh.pial) cannot be told from its maps'.
@@ -80,9 +81,7 @@ bool filesMeet(const Declaration& declaration) {
 
 Meeting::Meeting(const Declaration& declaration, const std::set<std::string>& given,
                  std::vector<std::string> accepted)
-    : declaration_(declaration),
-      accepted_(std::move(accepted)),
-      mirrored_(given.count("mirror") > 0) {
+    : declaration_(declaration), accepted_(std::move(accepted)) {
   const bool ownLimits = declaration.find("accept") != nullptr;
   for (const std::string& name : accepted_) {
     if (!ownLimits && name != kAcceptHemisphere && name != kAcceptMesh) {
@@ -166,8 +165,10 @@ std::vector<std::string> Meeting::add(const std::string& role, const fs::path& p
   }
   for (const File& other : files_) {
     if (other.role != role && hasBothSides(other.role)) continue;
-    const bool apart = isOfAnother(parameter) != isOfAnother(other.parameter);
-    if (!apart || !mirrored_) contradict(kAcceptHemisphere, sidesOf(other, file), sentences);
+    const bool *mine = ofAnother(parameter), *theirs = ofAnother(other.parameter);
+    const bool apart = (mine == nullptr) != (theirs == nullptr);
+    if (!apart || !*(mine ? mine : theirs))
+      contradict(kAcceptHemisphere, sidesOf(other, file), sentences);
     if (!apart) contradict(kAcceptMesh, meshesOf(other, file), sentences);
   }
   files_.push_back(file);

@@ -61,7 +61,6 @@ class Meeting {
 
   const Declaration& declaration_;
   std::vector<std::string> accepted_;
-  bool mirrored_;  ///< another person's files are of the other hemisphere, or may be
   std::vector<File> files_;
 };
 

@@ -21,4 +21,11 @@ std::string escapeHtml(std::string_view text, std::string_view escaped) {
   return out;
 }
 
+std::string scriptSafe(std::string json) {
+  for (auto at = json.find('<'); at != json.npos; at = json.find('<', at)) {
+    json.replace(at, 1, "\\u003c");
+  }
+  return json;
+}
+
 }  // namespace explica

@@ -55,6 +55,11 @@ std::string rangeOf(const Result& result, const Limit& limit) {
   return shown(limit.least, result.unit).text + " to " + inWords(result, limit.most);
 }
 
+std::string withSource(const Result& result, const Limit& limit) {
+  const std::string range = rangeOf(result, limit);
+  return limit.source.empty() ? range : range + " (" + limit.source + ")";
+}
+
 }  // namespace
 
 Result& Result::within(double least, double most, Judgement outside, std::string source) {
@@ -104,9 +109,12 @@ std::optional<Judgement> Result::judgement() const {
 }
 
 std::string Result::expectation(const Limit& limit) const {
-  const std::string text =
-      (limit.outside == Judgement::Good ? "usual " : "expected ") + rangeOf(*this, limit);
-  return limit.source.empty() ? text : text + " (" + limit.source + ")";
+  return (limit.outside == Judgement::Good ? "usual " : "expected ") + withSource(*this, limit);
+}
+
+std::string Result::expected() const {
+  const auto measure = measureOf(value);
+  return measure && !limits.empty() ? withSource(*this, decisive(limits, *measure)) : "";
 }
 
 std::string Result::sentence() const {

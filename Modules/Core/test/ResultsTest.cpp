@@ -36,6 +36,7 @@ TEST(Results, TheWorstLimitDecides) {
   EXPECT_EQ(look["error"].sentence(),
             "Mean error: 3 %; expected at most 2 % (read to a few per cent)");
   EXPECT_EQ(doubt["error"].sentence(), "Mean error: 20 %; expected at most 10 % (seen by eye)");
+  EXPECT_EQ(doubt["error"].expected(), "at most 10 % (seen by eye)");
 }
 
 TEST(Results, WhatIsNotKnownIsNotJudged) {
@@ -44,6 +45,7 @@ TEST(Results, WhatIsNotKnownIsNotJudged) {
   EXPECT_FALSE(
       t.count("pairs", "Pairs", "", std::nullopt).exactly(0, Judgement::Doubt, "").judgement());
   EXPECT_FALSE(t.number("free", "Free", "", "", 3).judgement()) << "it has no limit";
+  EXPECT_EQ(t["free"].expected(), "");
   EXPECT_FALSE(t.number("unbound", "Unbound", "", "", 3)
                    .atMost(std::nan(""), Judgement::Doubt, "")
                    .judgement());
@@ -55,6 +57,7 @@ TEST(Results, AUsualRangeIsStatedAndJudgesNobody) {
       t.number("t", "Mean thickness", "mm", "", 3.4).usual(2.3, 3.1, "1,035 people");
   EXPECT_FALSE(mean.judgement());
   EXPECT_EQ(mean.sentence(), "Mean thickness: 3.4 mm; usual 2.3 to 3.1 mm (1,035 people)");
+  EXPECT_EQ(mean.expected(), "2.3 to 3.1 mm (1,035 people)");
   t["t"].limits.insert(t["t"].limits.begin(), {0, 3, Judgement::Look, ""});
   EXPECT_EQ(t["t"].judgement(), Judgement::Look) << "another limit still judges";
 }

@@ -8,79 +8,57 @@
 namespace explica::flattening {
 namespace {
 
-constexpr char kMagic[] = "ExplicaFlat1\n";  // the number counts changes of the format
+constexpr char kMagic[] = "ExplicaFlat2\n";  // the number counts changes of the format
 
-void write(StateWriter& w, const CutPlan& plan) {
-  w.count(static_cast<std::int64_t>(plan.termination));
-  w.number(plan.strainBefore);
-  w.number(plan.edgeStrain);
-  w.count(static_cast<std::int64_t>(plan.cuts.size()));
-  for (const Cut& cut : plan.cuts) {
-    w.indices(cut.path);
-    w.number(cut.length);
-    w.number(cut.depth);
+template <class Access, class Plan>
+void visitPlan(const Access& access, Plan& plan) {
+  access(plan.termination);
+  access(plan.strainBefore);
+  access(plan.edgeStrain);
+  access.size(plan.cuts);
+  for (auto& cut : plan.cuts) {
+    access(cut.path);
+    access(cut.length);
+    access(cut.depth);
   }
-  w.count(static_cast<std::int64_t>(plan.found.size()));
-  for (const CutPath& path : plan.found) w.indices(path);
+  access.size(plan.found);
+  for (auto& path : plan.found) access(path);
 }
 
-CutPlan readPlan(StateReader& r) {
-  CutPlan plan;
-  plan.termination = static_cast<Termination>(r.count());
-  plan.strainBefore = r.number();
-  plan.edgeStrain = r.number();
-  plan.cuts.resize(static_cast<std::size_t>(r.count()));
-  for (Cut& cut : plan.cuts) {
-    cut.path = r.indices();
-    cut.length = r.number();
-    cut.depth = r.number();
+/// All of a checkpoint but its cuts: one list for writing and reading.
+template <class Access, class Run>
+void visitRun(const Access& access, Run& run) {
+  auto& map = run.map;
+  access(run.uncut);
+  access(map.disc);
+  access(map.level);
+  access(map.iterations);
+  access(map.areaWeight);
+  access(map.areaTolerance);
+  access(map.settled);
+  access(map.positions);
+  access.size(map.path);
+  for (auto& stage : map.path) {
+    access(stage.level);
+    access(stage.positions);
   }
-  plan.found.resize(static_cast<std::size_t>(r.count()));
-  for (CutPath& path : plan.found) path = r.indices();
-  return plan;
 }
 
 }  // namespace
 
 void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
-  StateWriter w;
-  w.raw(&checkpoint.uncut, sizeof checkpoint.uncut);
-  w.count(checkpoint.cuts.has_value());
-  if (checkpoint.cuts) write(w, *checkpoint.cuts);
-  const FlattenState& map = checkpoint.map;
-  w.raw(&map.disc, sizeof map.disc);
-  w.count(map.level + 1);
-  w.number(map.iterations);
-  w.number(map.areaWeight);
-  w.number(map.areaTolerance);
-  w.count(map.settled);
-  w.rows(map.positions);
-  w.count(static_cast<std::int64_t>(map.path.size()));
-  for (const FlatStage& stage : map.path) {
-    w.count(stage.level);
-    w.rows(stage.positions);
-  }
-  w.commit(path, kMagic);
+  StateWriter file;
+  visitRun(StateWriting{file}, checkpoint);
+  if (checkpoint.cuts) visitPlan(StateWriting{file}, *checkpoint.cuts);
+  file.commit(path, kMagic);
 }
 
 Checkpoint readCheckpoint(const std::filesystem::path& path) {
-  StateReader r(path, kMagic, "a flat map");
-  Checkpoint c;
-  r.raw(&c.uncut, sizeof c.uncut);
-  if (r.count() != 0) c.cuts = readPlan(r);
-  r.raw(&c.map.disc, sizeof c.map.disc);
-  c.map.level = static_cast<int>(r.count()) - 1;
-  c.map.iterations = static_cast<int>(r.number());
-  c.map.areaWeight = r.number();
-  c.map.areaTolerance = r.number();
-  c.map.settled = r.count() != 0;
-  c.map.positions = r.rows<FlatPositions>();
-  c.map.path.resize(static_cast<std::size_t>(r.count()));
-  for (FlatStage& stage : c.map.path) {
-    stage.level = static_cast<int>(r.count());
-    stage.positions = r.rows<FlatPositions>();
-  }
-  return c;
+  StateReader file(path, kMagic, "a flat map");
+  Checkpoint checkpoint;
+  visitRun(StateReading{file}, checkpoint);
+  if (!file.atEnd()) visitPlan(StateReading{file}, checkpoint.cuts.emplace());
+  return checkpoint;
 }
 
 }  // namespace explica::flattening

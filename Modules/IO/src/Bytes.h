@@ -30,6 +30,10 @@ inline std::string_view textOf(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+inline ByteView bytesOf(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
 inline std::string quoted(const std::filesystem::path& path) {
   return "'" + path.string() + "'";
 }
@@ -92,6 +96,8 @@ class ByteCursor {
  public:
   ByteCursor(const std::filesystem::path& path, ByteView bytes, bool bigEndian)
       : path_(path), bytes_(bytes), bigEndian_(bigEndian) {}
+  ByteCursor(const std::filesystem::path& path, std::string_view text)
+      : ByteCursor(path, bytesOf(text), false) {}
 
   template <class T>
   [[nodiscard]] T take() {

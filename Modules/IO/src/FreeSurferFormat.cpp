@@ -37,35 +37,6 @@ int take24(ByteCursor& cursor) {
   return bytes[0] << 16 | bytes[1] << 8 | bytes[2];
 }
 
-/// The `key = value` lines of a volume geometry, if valid.
-std::optional<Grid> volumeOf(const std::filesystem::path& path, ByteCursor& cursor) {
-  std::map<std::string, std::string> fields;
-  for (int i = 0; i < kGeometryLines && cursor.left() > 0; ++i) {
-    const std::string_view line = cursor.line();
-    const std::size_t mark = line.find('=');
-    if (mark == std::string_view::npos) break;
-    std::string key(line.substr(0, mark));
-    key.erase(key.find_last_not_of(' ') + 1);
-    fields[key] = std::string(line.substr(mark + 1));
-  }
-  const auto numbers = [&](const char* key, auto&& to) {
-    std::istringstream words(fields[key]);
-    for (int i = 0; i < 3; ++i) {
-      if (!(words >> to[i])) return false;
-    }
-    return true;
-  };
-  if (fields["valid"].find('1') == std::string::npos) return {};
-  VolumeText text;
-  Vector x, y, z;
-  if (!numbers("volume", text.size) || !numbers("voxelsize", text.spacing) || !numbers("xras", x) ||
-      !numbers("yras", y) || !numbers("zras", z) || !numbers("cras", text.centre)) {
-    return {};
-  }
-  text.axes << x, y, z;
-  return gridOfVolumeText(path, text);
-}
-
 FrameInFile footerOf(const std::filesystem::path& path, ByteCursor& cursor) {
   FrameInFile frame;
   while (cursor.left() >= 4) {
@@ -73,7 +44,7 @@ FrameInFile footerOf(const std::filesystem::path& path, ByteCursor& cursor) {
     if (tag == kTagUseRealRas && cursor.left() >= 4) {
       if (cursor.take<std::int32_t>() != 0) frame.stated = "scanner";
     } else if (tag == kTagVolumeGeometry) {
-      frame.tkrVolume = volumeOf(path, cursor);
+      frame.tkrVolume = volumeInWords(path, cursor);
       break;
     } else {
       break;  // other tags concern tools, not geometry
@@ -113,6 +84,36 @@ std::uint32_t packed(const LabelEntry& entry) {
 }
 
 }  // namespace
+
+std::optional<Grid> volumeInWords(const std::filesystem::path& path, ByteCursor& lines) {
+  constexpr int kGeometryLines = 8;
+  std::map<std::string, std::string> fields;
+  for (int i = 0; i < kGeometryLines && lines.left() > 0; ++i) {
+    std::string_view line = lines.line();
+    line = line.substr(0, line.find('#'));
+    const std::size_t mark = line.find('=');
+    if (mark == std::string_view::npos) break;
+    std::string key(line.substr(0, mark));
+    key.erase(key.find_last_not_of(' ') + 1);
+    fields[key] = std::string(line.substr(mark + 1));
+  }
+  const auto numbers = [&](const char* key, auto&& to) {
+    std::istringstream words(fields[key]);
+    for (int i = 0; i < 3; ++i) {
+      if (!(words >> to[i])) return false;
+    }
+    return true;
+  };
+  if (fields["valid"].find('1') == std::string::npos) return {};
+  VolumeText text;
+  Vector x, y, z;
+  if (!numbers("volume", text.size) || !numbers("voxelsize", text.spacing) || !numbers("xras", x) ||
+      !numbers("yras", y) || !numbers("zras", z) || !numbers("cras", text.centre)) {
+    return {};
+  }
+  text.axes << x, y, z;
+  return gridOfVolumeText(path, text);
+}
 
 FreeSurferKind freeSurferKindOf(ByteView bytes) {
   if (bytes.size() < 15) return FreeSurferKind::None;

@@ -11,8 +11,10 @@
 
 namespace explica::io {
 
-/// Of a volume's geometry as FreeSurfer writes it, in the footers of surfaces and in LTA files.
-inline constexpr int kGeometryLines = 8;
+/// The volume of `key = value` lines as FreeSurfer writes them, in the footers of surfaces and in
+/// LTA files; nothing if they are not whole, or say that they are not valid.
+[[nodiscard]] std::optional<Grid> volumeInWords(const std::filesystem::path& path,
+                                                ByteCursor& lines);
 
 /// What the first bytes promise; old quad surfaces share a magic number with new curv files.
 enum class FreeSurferKind { None, Surface, Curv };

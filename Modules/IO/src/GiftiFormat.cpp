@@ -132,10 +132,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       array.dataSpace = trimmedText(space->text);
     }
     if (const XmlElement* matrix = system->child("MatrixData")) {
-      ByteCursor cursor(
-          path,
-          ByteView(reinterpret_cast<const std::uint8_t*>(matrix->text.data()), matrix->text.size()),
-          false);
+      ByteCursor cursor(path, matrix->text);
       for (int i = 0; i < 16; ++i) {
         const std::string_view word = cursor.word();
         if (word.empty()) break;
@@ -153,8 +150,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       failTruncated(path, "has a GIFTI array with fewer numbers than announced");
     }
     array.values.reserve(static_cast<std::size_t>(count));
-    ByteCursor cursor(
-        path, ByteView(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()), false);
+    ByteCursor cursor(path, text);
     for (std::int64_t i = 0; i < count; ++i) {
       array.values.push_back(parseNumber<double>(path, cursor.word()));
     }
@@ -290,7 +286,7 @@ void appendArray(std::string& text, const ArrayToWrite& array) {
         "0\n0 0 1 0\n0 0 0 1</MatrixData>\n</CoordinateSystemTransformMatrix>\n";
   }
   text += "<Data>";
-  appendBase64(text, packZlib(array.bytes));
+  text += base64(textOf(packZlib(array.bytes)));
   text += "</Data>\n</DataArray>\n";
 }
 
@@ -357,15 +353,13 @@ bool isClosed(const Faces& faces) {
 
 bool looksLikeGifti(ByteView bytes) {
   constexpr std::size_t kFarEnough = 4096;  // bytes in which the root element begins
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()),
-                              std::min(bytes.size(), kFarEnough));
+  const std::string_view text = textOf(bytes).substr(0, kFarEnough);
   return text.find("<GIFTI") != std::string_view::npos ||
          text.find("<!DOCTYPE GIFTI") != std::string_view::npos;
 }
 
 GiftiFile parseGifti(const std::filesystem::path& path, ByteView bytes) {
-  XmlElement root =
-      parseXml(path, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  XmlElement root = parseXml(path, textOf(bytes));
   if (root.name != "GIFTI") failToRead(path, "is XML, but not GIFTI");
   GiftiFile file;
   file.metadata = metadataOf(root);

@@ -42,8 +42,7 @@ std::vector<TransformEntry> entriesOfText(const Path& path, ByteView bytes) {
   ByteCursor lines(path, bytes, false);
   while (lines.left() > 0) {
     const std::string_view line = lines.line();
-    ByteCursor words(path, {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()},
-                     false);
+    ByteCursor words(path, line);
     const std::string_view key = words.word();
     if (key == "Transform:") {
       add(path, entries, {std::string(words.word()), {}, {}});
@@ -195,7 +194,7 @@ Transform::Pointer transformOf(const Path& path, TransformEntry entry) {
 
 std::vector<TransformEntry> entriesOf(const Path& path) {
   const Bytes bytes = ByteSource(path).rest();
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view text = textOf(bytes);
   if (looksLikeHdf5(bytes)) return entriesOfHdf5(path, bytes);
   if (text.starts_with("#Insight")) return entriesOfText(path, bytes);
   return entriesOfMatlab(path, bytes);

@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -252,31 +251,6 @@ void writeGzip(WholeFile& file, const Content& content) {
 Bytes packZlib(ByteView bytes) {
   isal_hufftables codes = codesOf(bytes);
   return deflated(bytes, codes, true);
-}
-
-void appendBase64(std::string& text, ByteView bytes) {
-  static const auto kPairs = [] {  // 12 bits at once
-    std::array<std::array<char, 2>, 4096> pairs{};
-    for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = {kBase64[n >> 6], kBase64[n & 63]};
-    return pairs;
-  }();
-  const std::size_t before = text.size();
-  text.resize(before + (bytes.size() + 2) / 3 * 4);
-  char* to = text.data() + before;
-  std::size_t i = 0;
-  for (; i + 3 <= bytes.size(); i += 3, to += 4) {
-    const std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16 |
-                               static_cast<std::uint32_t>(bytes[i + 1]) << 8 | bytes[i + 2];
-    std::memcpy(to, kPairs[bits >> 12].data(), 2);
-    std::memcpy(to + 2, kPairs[bits & 4095].data(), 2);
-  }
-  if (i == bytes.size()) return;
-  const bool two = i + 2 == bytes.size();
-  const std::uint32_t bits = static_cast<std::uint32_t>(bytes[i]) << 16 |
-                             (two ? static_cast<std::uint32_t>(bytes[i + 1]) << 8 : 0);
-  std::memcpy(to, kPairs[bits >> 12].data(), 2);
-  to[2] = two ? kBase64[bits >> 6 & 63] : '=';
-  to[3] = '=';
 }
 
 }  // namespace explica::io

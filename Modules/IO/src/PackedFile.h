@@ -37,6 +37,4 @@ void writeGzip(WholeFile& file, const Content& content);
 /// zlib data (RFC 1950) of a block in memory.
 [[nodiscard]] Bytes packZlib(ByteView bytes);
 
-void appendBase64(std::string& text, ByteView bytes);
-
 }  // namespace explica::io

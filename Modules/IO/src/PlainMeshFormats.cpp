@@ -107,8 +107,7 @@ PlyHeader plyHeaderOf(const std::filesystem::path& path, ByteView bytes) {
   while (true) {
     if (cursor.left() == 0) failTruncated(path, "its PLY header does not end");
     const std::string_view line = cursor.line();
-    ByteCursor words(
-        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    ByteCursor words(path, line);
     const std::string_view word = words.word();
     if (word == "end_header") break;
     if (word == "format") {
@@ -239,8 +238,7 @@ LoadedSurface readObj(const std::filesystem::path& path, ByteView bytes) {
   std::vector<std::int64_t> corners;
   while (cursor.left() > 0) {
     const std::string_view line = cursor.line();
-    ByteCursor words(
-        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    ByteCursor words(path, line);
     const std::string_view kind = words.word();
     if (kind == "v") {
       for (int k = 0; k < 3; ++k) {
@@ -308,10 +306,7 @@ LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
     }
     failTruncated(path, "the file ends too early");
   };
-  const auto wordsOf = [&path](std::string_view line) {
-    return ByteCursor(
-        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
-  };
+  const auto wordsOf = [&path](std::string_view line) { return ByteCursor(path, line); };
   ByteCursor counts = wordsOf(nextLine());
   const auto announcedVertices = parseNumber<std::int64_t>(path, counts.word());
   const auto announcedFaces = parseNumber<std::int64_t>(path, counts.word());
@@ -427,8 +422,7 @@ Corners<double> textCorners(const std::filesystem::path& path, ByteView bytes) {
   bool ended = false;
   while (cursor.left() > 0) {
     const std::string_view line = cursor.line();
-    ByteCursor words(
-        path, ByteView(reinterpret_cast<const std::uint8_t*>(line.data()), line.size()), false);
+    ByteCursor words(path, line);
     const std::string_view word = words.word();
     if (word == "endsolid") ended = true;
     if (word != "vertex") continue;

@@ -47,22 +47,18 @@ std::string wordFor(bool inverse) {
   return inverse ? "volume to surface, inverted" : "surface to volume, as it stands";
 }
 
-std::string_view withoutComment(std::string_view line) {
-  return line.substr(0, line.find('#'));
-}
-
 /// All numbers of a text; empty if there is anything else.
-std::vector<double> numbersOf(ByteView bytes) {
+std::vector<double> allNumbersIn(std::string_view text) {
   std::vector<double> numbers;
   const std::filesystem::path none;
-  ByteCursor lines(none, bytes, false);
+  ByteCursor lines(none, text);
   while (lines.left() > 0) {
-    std::string line(withoutComment(lines.line()));
+    const std::string_view whole = lines.line();
+    std::string line(whole.substr(0, whole.find('#')));
     for (char& c : line) {
       if (c == ',' || c == ';') c = ' ';
     }
-    ByteCursor words(none, {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()},
-                     false);
+    ByteCursor words(none, line);
     for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
       double value = 0;
       if (word.starts_with('+')) word.remove_prefix(1);
@@ -106,8 +102,7 @@ PointTransform pycortex(const std::filesystem::path& path, std::string_view text
   for (char& c : rows) {
     if (c == '[' || c == ']' || c == ':' || c == ',') c = ' ';
   }
-  const std::vector<double> numbers =
-      numbersOf({reinterpret_cast<const std::uint8_t*>(rows.data()), rows.size()});
+  const std::vector<double> numbers = allNumbersIn(rows);
   if (numbers.size() != 16) failToRead(path, "its \"coord\" is not a matrix of 4 x 4 numbers");
   const Eigen::Matrix4d toIndex = matrixOf(path, numbers);
   if (sides.sense == TransformSense::Inverse) {
@@ -117,9 +112,9 @@ PointTransform pycortex(const std::filesystem::path& path, std::string_view text
                 sides.volume.affine() * toIndex * sides.scannerFromFile.inverse());
 }
 
-PointTransform registerDat(const std::filesystem::path& path, ByteView bytes,
+PointTransform registerDat(const std::filesystem::path& path, std::string_view text,
                            const TransformSides& sides) {
-  ByteCursor cursor(path, bytes, false);
+  ByteCursor cursor(path, text);
   for (int line = 0; line < 4; ++line)
     static_cast<void>(cursor.line());  // subject, voxels, intensity
   std::vector<double> numbers;
@@ -138,39 +133,14 @@ PointTransform registerDat(const std::filesystem::path& path, ByteView bytes,
                 scannerFromTkr(sides.volume) * tkr * sides.scannerFromTkr->inverse());
 }
 
-/// One side of an LTA: `key = value` lines after "src volume info" or "dst volume info".
+/// One side of an LTA: the volume after "src volume info" or "dst volume info".
 std::optional<Grid> sideOf(const std::filesystem::path& path, std::string_view text,
                            std::string_view title) {
   const std::size_t begin = text.find(title);
   if (begin == std::string_view::npos) return {};
-  ByteCursor lines(
-      path, {reinterpret_cast<const std::uint8_t*>(text.data()) + begin, text.size() - begin},
-      false);
+  ByteCursor lines(path, text.substr(begin));
   static_cast<void>(lines.line());
-  std::map<std::string, std::vector<double>> fields;
-  for (int n = 0; n < kGeometryLines && lines.left() > 0; ++n) {
-    const std::string_view line = withoutComment(lines.line());
-    const std::size_t mark = line.find('=');
-    if (mark == std::string_view::npos) break;
-    std::string key(line.substr(0, mark));
-    key.erase(key.find_last_not_of(' ') + 1);
-    const std::string_view value = line.substr(mark + 1);
-    fields[key] = numbersOf({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
-  }
-  const auto get = [&](const char* key, auto&& to) {
-    const std::vector<double>& numbers = fields[key];
-    if (numbers.size() != 3) return false;
-    for (int i = 0; i < 3; ++i) to[i] = numbers[i];
-    return true;
-  };
-  VolumeText volume;
-  Vector x, y, z;
-  const bool whole = fields["valid"] == std::vector<double>{1} && get("volume", volume.size) &&
-                     get("voxelsize", volume.spacing) && get("xras", x) && get("yras", y) &&
-                     get("zras", z) && get("cras", volume.centre);
-  if (!whole) return {};
-  volume.axes << x, y, z;
-  return gridOfVolumeText(path, volume);
+  return volumeInWords(path, lines);
 }
 
 PointTransform lta(const std::filesystem::path& path, std::string_view text,
@@ -180,10 +150,7 @@ PointTransform lta(const std::filesystem::path& path, std::string_view text,
     const std::size_t mark = at == std::string_view::npos ? at : text.find('=', at);
     if (mark == std::string_view::npos)
       failToRead(path, "is an LTA without '" + std::string(key) + "'");
-    ByteCursor cursor(
-        path,
-        {reinterpret_cast<const std::uint8_t*>(text.data()) + mark + 1, text.size() - mark - 1},
-        false);
+    ByteCursor cursor(path, text.substr(mark + 1));
     return parseNumber<int>(path, cursor.word());
   };
   constexpr int kVoxelToVoxel = 0, kRasToRas = 1;  // FreeSurfer's numbers of types
@@ -195,9 +162,7 @@ PointTransform lta(const std::filesystem::path& path, std::string_view text,
   }
   const std::size_t head = text.find("1 4 4");
   if (head == std::string_view::npos) failToRead(path, "is an LTA without a 4 x 4 matrix");
-  ByteCursor cursor(
-      path, {reinterpret_cast<const std::uint8_t*>(text.data()) + head + 5, text.size() - head - 5},
-      false);
+  ByteCursor cursor(path, text.substr(head + 5));
   std::vector<double> numbers;
   for (int i = 0; i < 16; ++i) numbers.push_back(parseNumber<double>(path, cursor.word()));
   Eigen::Matrix4d matrix = matrixOf(path, numbers);
@@ -238,7 +203,7 @@ Positions PointTransform::operator()(const Positions& points) const {
 PointTransform readPointTransform(const std::filesystem::path& path, const TransformSides& sides) {
   ByteSource source(path);
   const ByteView first = source.peek(8);
-  const std::string_view magic(reinterpret_cast<const char*>(first.data()), first.size());
+  const std::string_view magic = textOf(first);
   const bool inverse = sides.sense == TransformSense::Inverse;
   const auto itk = [&] {
     PointTransform transform;
@@ -254,7 +219,7 @@ PointTransform readPointTransform(const std::filesystem::path& path, const Trans
     failToRead(path, "is not a transform of a known format (it is too long for a matrix as text)");
   }
   const Bytes bytes = source.rest();
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view text = textOf(bytes);
   if (text.find('\0') != std::string_view::npos) {
     if (extension == ".mat" || extension == ".h5" || extension == ".hdf5") return itk();
     failToRead(path, "is not a transform of a known format");
@@ -262,13 +227,13 @@ PointTransform readPointTransform(const std::filesystem::path& path, const Trans
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start != std::string_view::npos && text[start] == '{') return pycortex(path, text, sides);
   if (text.find("src volume info") != std::string_view::npos) return lta(path, text, sides);
-  const std::vector<double> numbers = numbersOf(bytes);
+  const std::vector<double> numbers = allNumbersIn(text);
   if (numbers.size() == 16) return plainMatrix(path, numbers, sides.sense);
   if (numbers.empty() &&
       (text.find("round") != std::string_view::npos ||
        text.find("tkregister") != std::string_view::npos ||
        text.find("trunc") != std::string_view::npos || path.extension() == ".dat")) {
-    return registerDat(path, bytes, sides);
+    return registerDat(path, text, sides);
   }
   failToRead(path,
              "is not a transform of a known format (4 x 4 matrix as text, ITK text, .mat or .h5, "

@@ -152,26 +152,12 @@ Positions2 readPolygon(const std::filesystem::path& path) {
   return polygon;
 }
 
-void writePolygonCsv(const std::filesystem::path& path, const Positions2& polygon,
-                     const std::vector<VertexMap>& vertexMaps) {
-  std::string text = "x,y";
-  for (const VertexMap& map : vertexMaps) {
-    if (map.values.size() != polygon.rows()) {
-      throw InvalidInput("map '" + map.name + "' for " + quoted(path) + ": it has " +
-                         std::to_string(map.values.size()) + " values; " +
-                         std::to_string(polygon.rows()) + " are needed");
-    }
-    text += "," + map.name;
-  }
-  text += '\n';
+void writePolygonCsv(const std::filesystem::path& path, const Positions2& polygon) {
+  std::string text = "x,y\n";
   for (Eigen::Index v = 0; v < polygon.rows(); ++v) {
     appendNumber(text, polygon(v, 0));
     text += ',';
     appendNumber(text, polygon(v, 1));
-    for (const VertexMap& map : vertexMaps) {
-      text += ',';
-      appendNumber(text, map.values[v]);
-    }
     text += '\n';
   }
   writeTextFile(path, text);

@@ -24,10 +24,20 @@ std::string vertexFileEnding(const std::string& name) {
   return "";
 }
 
+bool namesLabels(const std::filesystem::path& path) {
+  const std::string ending = vertexFileEnding(path.filename().string());
+  return ending.starts_with(".label") || ending.starts_with(".annot");
+}
+
+Eigen::VectorXd readVertexNumbers(const std::filesystem::path& path, Eigen::Index vertexCount) {
+  if (namesLabels(path)) return readVertexLabels(path, vertexCount).keys.cast<double>();
+  return readVertexMaps(path, vertexCount).front().values;
+}
+
 VertexFileKind vertexFileKind(const std::filesystem::path& path) {
   const std::string ending = vertexFileEnding(path.filename().string());
   if (ending.starts_with(".surf")) return VertexFileKind::Surface;
-  if (ending.starts_with(".label") || ending == ".annot") return VertexFileKind::Labels;
+  if (namesLabels(path)) return VertexFileKind::Labels;
   try {
     (void)readVertexMaps(path);
     return VertexFileKind::Maps;

@@ -15,7 +15,7 @@ namespace {
 /// Whether a file begins with these bytes.
 template <std::size_t count>
 bool begins(ByteView bytes, const char (&start)[count]) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string_view text = textOf(bytes);
   return text.starts_with(std::string_view(start, count - 1));
 }
 

@@ -11,10 +11,6 @@
 namespace explica::io {
 namespace {
 
-ByteView bytesOf(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 struct TypeRow {
   std::string_view legacy;
   std::string_view xml;
@@ -383,7 +379,7 @@ class XmlReader {
     const std::string format = array["format"];
     if (format == "ascii" || format.empty()) {
       std::vector<double> values;
-      ByteCursor cursor(path_, bytesOf(array.text), false);
+      ByteCursor cursor(path_, array.text);
       for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
         values.push_back(parseNumber<double>(path_, word));
       }

@@ -140,7 +140,7 @@ void write(const fs::path& path) {
     Positions2 polygon(3, 2);
     polygon << 0, 0, 1, 0, 0.25, 1;
     const io::VertexMap map{"a", "", Eigen::VectorXd::Ones(3)};
-    if (name.ends_with(".csv")) io::writePolygonCsv(path, polygon, {map});
+    if (name.ends_with(".csv")) io::writePolygonCsv(path, polygon);
     if (name.ends_with(".vtp")) io::writePolygonVtp(path, polygon, {map});
   } else if (name == "legacy.vtk") {
     putContent(path,

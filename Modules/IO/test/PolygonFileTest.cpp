@@ -22,9 +22,9 @@ Positions2 somePolygon() {
 TEST(Polygon, CsvAndVtpGiveBackEveryDouble) {
   const TemporaryFolder folder;
   const io::VertexMap map{"flux", "", Eigen::VectorXd::LinSpaced(5, 0, 1)};
-  io::writePolygonCsv(folder / "a.csv", somePolygon(), {map});
+  io::writePolygonCsv(folder / "a.csv", somePolygon());
   EXPECT_EQ(io::readPolygon(folder / "a.csv"), somePolygon());
-  EXPECT_TRUE(contentOf(folder / "a.csv").starts_with("x,y,flux\n0,0,0\n"));
+  EXPECT_TRUE(contentOf(folder / "a.csv").starts_with("x,y\n0,0\n"));
   io::writePolygonVtp(folder / "a.vtp", somePolygon(), {map}, {map});
   EXPECT_EQ(io::readPolygon(folder / "a.vtp"), somePolygon());
   EXPECT_EQ(io::readVertexMaps(folder / "a.vtp").at(0).values, map.values);

@@ -208,7 +208,7 @@ std::vector<Row> honest() {
   };
   const auto outline = [](const fs::path& path) {
     const Positions2 polygon = Positions2::Random(kValues / 2, 2);
-    if (path.extension() == ".csv") io::writePolygonCsv(path, polygon, {});
+    if (path.extension() == ".csv") io::writePolygonCsv(path, polygon);
     if (path.extension() == ".vtp") io::writePolygonVtp(path, polygon, {}, {});
   };
   return {

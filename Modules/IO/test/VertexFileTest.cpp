@@ -38,5 +38,23 @@ TEST(VertexFile, WritesWhatItReads) {
   EXPECT_THROW(writeVertexMaps(folder / "lh.vf", {map, map}, "", 2), InvalidInput);
 }
 
+TEST(VertexFile, NumbersAreKeysOfLabelsOrTheFirstMap) {
+  const auto folder = std::filesystem::path(::testing::TempDir());
+  LabelMap labels;
+  labels.keys.resize(3);
+  labels.keys << 0, 7, 0;
+  labels.table = {{0, "none", {}}, {7, "cortex", {}}};
+  writeGiftiLabel(folder / "lh.inside.label.gii", labels, "CortexLeft");
+  EXPECT_EQ(readVertexNumbers(folder / "lh.inside.label.gii", 3), Eigen::Vector3d(0, 7, 0));
+  const VertexMap map{"inside", "", Eigen::Vector3d(0, 1, 0.5)};
+  writeVertexMaps(folder / "lh.inside.shape.gii", {map, map}, "CortexLeft", 1);
+  EXPECT_EQ(readVertexNumbers(folder / "lh.inside.shape.gii", 3), Eigen::Vector3d(0, 1, 0.5));
+  EXPECT_THROW((void)readVertexNumbers(folder / "lh.inside.shape.gii", 4), InvalidInput);
+  EXPECT_TRUE(namesLabels("a/lh.aparc.annot"));
+  EXPECT_TRUE(namesLabels("lh.cortex.label"));
+  EXPECT_TRUE(namesLabels("parcels.label.gii.gz"));
+  EXPECT_FALSE(namesLabels("lh.label.shape.gii"));
+}
+
 }  // namespace
 }  // namespace explica::io

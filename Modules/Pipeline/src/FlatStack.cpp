@@ -18,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
+constexpr int kTileWidth = 300;                                      // pixels, about
+constexpr int kMostTiles = 12;  // if there are more depths, so many evenly among them
 // As `explica flatten` names them.
 constexpr std::string_view kPrefix = "flat_", kEnding = ".nii.gz";
 
@@ -82,7 +84,7 @@ std::vector<fs::path> flatStackFiles(const fs::path& folder) {
   });
 }
 
-FlatStack drawFlatStack(const fs::path& file, const FlatStackOptions& options) {
+FlatStack drawFlatStack(const fs::path& file) {
   const Values values = readValues(file);
   const Grid& grid = values.mean.grid;
   FlatStack stack;
@@ -96,9 +98,8 @@ FlatStack drawFlatStack(const fs::path& file, const FlatStackOptions& options) {
     return stack.scale ? (*stack.scale)(value)
                        : report::colourOfLabel(static_cast<Label>(std::lround(value)));
   };
-  stack.pixelsPerCell =
-      std::max(1, (options.tileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
-  const int depths = grid.size[2], shown = std::min(depths, options.mostTiles);
+  stack.pixelsPerCell = std::max(1, (kTileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
+  const int depths = grid.size[2], shown = std::min(depths, kMostTiles);
   for (int n = 0; n < shown; ++n) {
     const int k = shown < 2 ? 0 : n * (depths - 1) / (shown - 1);
     stack.tiles.push_back({depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1),

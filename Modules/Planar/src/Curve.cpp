@@ -46,19 +46,6 @@ bool segmentsMeet(const Point2& a, const Point2& b, const Point2& c, const Point
          (cda == 0 && between(c, d, a)) || (cdb == 0 && between(c, d, b));
 }
 
-bool encloses(const Curve& curve, const Point2& q) {
-  bool within = false;  // a ray to the right crosses an odd number of edges
-  for (int e = 0; e < curve.edgeCount(); ++e) {
-    const Point2 a = curve.point(e);
-    const Point2 b = curve.point(curve.next(e));
-    if ((a.y() > q.y()) != (b.y() > q.y()) &&
-        q.x() < a.x() + (q.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) {
-      within = !within;
-    }
-  }
-  return within;
-}
-
 double distanceTo(const Curve& curve, const Point2& q) {
   double least = kInfinity;
   for (int e = 0; e < curve.edgeCount(); ++e) {

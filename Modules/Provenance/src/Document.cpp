@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
 
+#include <openssl/asn1.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
@@ -22,25 +23,13 @@ namespace fs = std::filesystem;
 
 /// Where the first byte stands that is not UTF-8, or is 0; npos if all is well.
 std::size_t firstFault(std::string_view text) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(text.data());
   for (std::size_t at = 0; at < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[at]);
-    if (lead == 0) return at;
-    const int more = lead < 0x80   ? 0
-                     : lead < 0xc2 ? -1
-                     : lead < 0xe0 ? 1
-                     : lead < 0xf0 ? 2
-                     : lead < 0xf5 ? 3
-                                   : -1;
-    if (more < 0 || at + static_cast<std::size_t>(more) >= text.size()) return at;
-    unsigned long code = more == 0 ? lead : lead & (0x3fU >> more);
-    for (int i = 1; i <= more; ++i) {
-      const auto next = static_cast<unsigned char>(text[at + static_cast<std::size_t>(i)]);
-      if ((next & 0xc0U) != 0x80U) return at;
-      code = code << 6 | (next & 0x3fU);
-    }
-    const bool tooShort = (more == 2 && code < 0x800) || (more == 3 && code < 0x10000);
-    if (tooShort || code > 0x10ffff || (code >= 0xd800 && code <= 0xdfff)) return at;
-    at += static_cast<std::size_t>(more) + 1;
+    unsigned long code = 0;
+    const auto left = static_cast<int>(std::min<std::size_t>(text.size() - at, 4));
+    const int length = UTF8_getc(bytes + at, left, &code);
+    if (length < 1 || code == 0 || code > 0x10ffff) return at;
+    at += static_cast<std::size_t>(length);
   }
   return std::string_view::npos;
 }

@@ -59,6 +59,8 @@ Json meaningOf(const Result& result) {
   for (const Limit& limit : result.limits) json["limits"].push_back(limitJson(limit));
   if (const auto judgement = result.judgement()) json["judgement"] = nameOf(*judgement);
   if (!result.limits.empty()) json["sentence"] = result.sentence();
+  if (const std::string expected = result.expected(); !expected.empty())
+    json["expected"] = expected;
   return json;
 }
 

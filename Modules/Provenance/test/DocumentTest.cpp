@@ -78,6 +78,8 @@ TEST_F(DocumentFile, FaultsOfJsonAreToldWithLineAndField) {
       {nested(100000, "{\"a\":", "}"), "a.a.a: is nested more than 64 levels deep"},
       {"{\"a\": \"\xff\"}", "d.json, line 1: is not text in UTF-8; save it so in your editor"},
       {"{\"a\": \"\xed\xa0\x80\"}", "is not text in UTF-8"},
+      {"{\"a\": \"\xf4\x90\x80\x80\"}", "is not text in UTF-8"},
+      {"{\"a\": \"\xc0\x80\"}", "is not text in UTF-8"},
       {"{}\n\xc3", "d.json, line 2: is not text in UTF-8"},
       {std::string("{\"a\": 1}\0", 9), "is not text in UTF-8"},
       {"{\"a\": }", "d.json, line 1, a: is not JSON"},

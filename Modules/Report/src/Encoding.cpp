@@ -2,30 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Encoding.h"
 
-#include "Explica/Core/Base64.h"
-
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 
 namespace explica::report {
-
-std::string base64(std::string_view bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::uint32_t group = 0;
-    const std::size_t left = std::min<std::size_t>(3, bytes.size() - at);
-    for (std::size_t b = 0; b < 3; ++b) {
-      group = group << 8 | (b < left ? static_cast<std::uint8_t>(bytes[at + b]) : 0u);
-    }
-    for (std::size_t d = 0; d < 4; ++d) {
-      text.push_back(d <= left ? kBase64[(group >> (18 - 6 * d)) & 63] : '=');
-    }
-  }
-  return text;
-}
 
 std::string deflated(std::string_view bytes) {
   uLongf size = compressBound(static_cast<uLong>(bytes.size()));

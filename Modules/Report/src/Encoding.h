@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Base64.h"
 #include "Explica/Core/TriangleMesh.h"
 
 #include <cstdint>
@@ -10,8 +11,6 @@
 #include <vector>
 
 namespace explica::report {
-
-[[nodiscard]] std::string base64(std::string_view bytes);
 
 /// zlib stream of bytes.
 [[nodiscard]] std::string deflated(std::string_view bytes);

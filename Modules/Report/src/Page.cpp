@@ -97,19 +97,6 @@ std::string stepsHtml(const std::vector<ReportStep>& steps) {
   return html + "</details></section>";
 }
 
-/// JSON as it may stand in a script element.
-std::string scriptSafe(const std::string& json) {
-  std::string safe;
-  for (const char c : json) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 // What the script of the three-dimensional view fills.
 constexpr const char* kViewHtml = R"(<section id="view3d"><h3>In three dimensions</h3>
 <div id="stage"><canvas id="canvas" tabindex="0" aria-label="Surface in three dimensions. Arrow keys rotate, plus and minus zoom, space plays, comma and full stop step, B switches between first and last frame, square brackets change the shape, R shows the patch, W the whole."></canvas><p id="stage-message">Preparing the surface ...</p><p id="under-pointer" aria-live="polite"></p><div id="bar" aria-hidden="true"><span id="bar-title"></span><span id="bar-high"></span><canvas id="bar-colours" width="14" height="128"></canvas><span id="bar-low"></span></div></div>

@@ -158,9 +158,9 @@ bool isShared(const Export& item) {
 
 /// An export's path in the derivative.
 std::string nameIn(const Participant& participant, const std::string& hemisphere,
-                   const Export& item, const std::string& label) {
+                   const Export& item) {
   std::string name =
-      participant.name() + (item.ofPerson ? "" : "_hemi-" + hemisphere) + label + item.suffix;
+      participant.name() + (item.ofPerson ? "" : "_hemi-" + hemisphere) + item.suffix;
   const std::size_t side = name.find('@');
   if (side != std::string::npos) name.replace(side, 1, hemisphere);
   return (anatOf(participant) / name).generic_string();
@@ -189,10 +189,9 @@ class Sources {
           const DerivativeOrigin& origin)
       : run_(run), origin_(origin), inputs_(filesOf(participant.input)) {
     for (const Export& item : exportsOf(run)) {
-      exported_[item.step + "/" + item.file] = "bids::" + nameIn(participant, hemisphere, item, "");
+      exported_[item.step + "/" + item.file] = "bids::" + nameIn(participant, hemisphere, item);
     }
-    for (const char* step : {"segment", "thickness", "surface", "sphere", "register", "resample",
-                             "parcellate", "regions", "unfold"}) {
+    for (const char* step : kRunSteps) {
       const fs::path record = run_ / step / provenance::kRecordName;
       if (isThere(record)) records_[step] = provenance::readRecord(record);
     }
@@ -344,12 +343,9 @@ void describeDerivatives(const fs::path& out, const DerivativeOrigin& origin,
 
 std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
                                 const Participant& participant, const std::string& hemisphere,
-                                const DerivativeOrigin& origin, const std::string& region) {
+                                const DerivativeOrigin& origin) {
   std::vector<fs::path> written;
-  const auto nameOf = [&](const Export& item) {
-    const bool ofPatch = item.step == "unfold" && !region.empty();
-    return nameIn(participant, hemisphere, item, ofPatch ? "_label-" + region : "");
-  };
+  const auto nameOf = [&](const Export& item) { return nameIn(participant, hemisphere, item); };
   const fs::path other =
       run.parent_path() / (participant.name() + "_hemi-" + (hemisphere == "L" ? "R" : "L"));
   const auto sidecarOf = [](const std::string& name) { return withoutExtensions(name) + ".json"; };

@@ -7,53 +7,11 @@
 #include "PageParts.h"
 
 #include <algorithm>
-#include <array>
 
 namespace explica::study {
 namespace {
 
 using provenance::Json;
-
-/// A column as people call it.
-struct ColumnWords {
-  const char* column;
-  const char* words;
-  const char* unit;
-};
-
-// Columns that the page calls by words; others by their own name.
-constexpr std::array kWords = {
-    ColumnWords{"thickness.thickness_mean", "Thickness of the volume, mean", "mm"},
-    ColumnWords{"thickness.thickness_median", "Thickness, median of voxels", "mm"},
-    ColumnWords{"thickness.sulcal_voxels_recovered", "Sulcal voxels recovered", ""},
-    ColumnWords{"surface.thickness_mean", "Cortical thickness, mean", "mm"},
-    ColumnWords{"surface.euler_characteristic", "Euler characteristic", ""},
-    ColumnWords{"surface.defects_corrected", "Defects corrected", ""},
-    ColumnWords{"surface.voxels_changed", "Voxels changed", ""},
-    ColumnWords{"surface.self_intersections", "Surface crossings", ""},
-    ColumnWords{"surface.area_white", "White area", "mm\u00b2"},
-    ColumnWords{"surface.area_pial", "Pial area", "mm\u00b2"},
-    ColumnWords{"surface.volume_white", "Volume inside the white surface", "mm\u00b3"},
-    ColumnWords{"surface.faces", "Faces of a surface", ""},
-    ColumnWords{"thickness.traced_fraction", "Trajectories followed, share", ""},
-    ColumnWords{"unfold.iterations", "Iterations of the unfolding", ""},
-    ColumnWords{"unfold.stop_reason", "Why the unfolding stopped", ""},
-    ColumnWords{"register.folding_correlation_after", "Correlation of sulcal depth", ""},
-    ColumnWords{"group.distance_thickness", "Thickness, distance from the group", "z"},
-    ColumnWords{"group.distance_sulc", "Sulcal depth, distance from the group", "z"},
-    ColumnWords{"group.distance_area", "Area, distance from the group", "z"},
-    ColumnWords{"unfold.region_area", "Patch area", "mm\u00b2"},
-    ColumnWords{"unfold.visibility_initial", "Visibility before", ""},
-    ColumnWords{"unfold.visibility_final", "Visibility after", ""},
-    ColumnWords{"unfold.seen_initial", "Seen before", ""},
-    ColumnWords{"unfold.seen_final", "Seen after", ""},
-    ColumnWords{"unfold.area_error_mean", "Area error, mean", ""},
-    ColumnWords{"unfold.edge_strain_mean", "Edge strain, mean", ""},
-    ColumnWords{"unfold.self_intersections_final", "Patch crossings", ""},
-    ColumnWords{"rating.wrong", "Places rated wrong", ""},
-    ColumnWords{"rating.unsure", "Places rated unsure", ""},
-    ColumnWords{"rating.right", "Places rated right", ""},
-};
 
 struct Heading {
   std::string words, unit;
@@ -65,24 +23,13 @@ bool isAbout(const std::string& column) {
 
 /// The words of a column; one without its own is named by its step and key.
 Heading headingOf(const std::string& column) {
-  for (const ColumnWords& known : kWords) {
-    if (column == known.column) return {known.words, known.unit};
-  }
+  if (const KnownColumn* known = knownColumn(column)) return {known->words, known->unit};
   const std::size_t dot = column.find('.');
   std::string words = column.substr(dot + 1);
   if (isRegion(column)) return {words, "mm"};
   if (isAbout(column)) return {words, ""};
   std::ranges::replace(words, '_', ' ');
   return {column.substr(0, dot) + ": " + words, ""};
-}
-
-/// JSON that may stand in a script element.
-std::string scriptText(const Json& value) {
-  std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  for (auto at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
-    text.replace(at, 1, "\\u003c");
-  }
-  return text;
 }
 
 bool hasRegions(const std::vector<StudyRow>& rows) {
@@ -169,8 +116,9 @@ std::string indexPage(const std::vector<StudyRow>& rows, const std::string& titl
          " need a look. The numbers in full are in <a href=\"study.tsv\">study.tsv</a>, those of "
          "regions in <a href=\"study_regions.tsv\">study_regions.tsv</a> too, how each step went "
          "in <a href=\"study_internals.tsv\">study_internals.tsv</a>.</p>\n" +
-         part + kBody + "</main><script type=\"application/json\" id=\"data\">" + scriptText(data) +
-         "</script>\n<script>" + kStudyScript + "</script>\n</body></html>\n";
+         part + kBody + "</main><script type=\"application/json\" id=\"data\">" +
+         scriptSafe(provenance::textOf(data)) + "</script>\n<script>" + kStudyScript +
+         "</script>\n</body></html>\n";
 }
 
 }  // namespace explica::study

@@ -25,51 +25,42 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
-/// Columns that come first, in this order; others follow by name.
-constexpr const char* kFirstColumns[] = {"surface.thickness_mean",
-                                         "thickness.thickness_mean",
-                                         "thickness.sulcal_voxels_recovered",
-                                         "surface.faces",
-                                         "surface.euler_characteristic",
-                                         "surface.defects_corrected",
-                                         "surface.voxels_changed",
-                                         "surface.self_intersections",
-                                         "surface.area_white",
-                                         "surface.area_pial",
-                                         "unfold.region_area",
-                                         "unfold.visibility_initial",
-                                         "unfold.visibility_final",
-                                         "unfold.seen_initial",
-                                         "unfold.seen_final",
-                                         "unfold.area_error_mean",
-                                         "unfold.edge_strain_mean",
-                                         "unfold.self_intersections_final",
-                                         "unfold.iterations",
-                                         "unfold.stop_reason",
-                                         "rating.wrong",
-                                         "rating.unsure",
-                                         "rating.right"};
+// In the order of those that come first; others follow by name.
+constexpr KnownColumn kColumns[] = {
+    {"surface.thickness_mean", "Cortical thickness, mean", "mm", true, true},
+    {"thickness.thickness_mean", "Thickness of the volume, mean", "mm", true, true},
+    {"thickness.sulcal_voxels_recovered", "Sulcal voxels recovered", "", true, false},
+    {"surface.faces", "Faces of a surface", "", true, false},
+    {"surface.euler_characteristic", "Euler characteristic", "", true, false},
+    {"surface.defects_corrected", "Defects corrected", "", true, true},
+    {"surface.voxels_changed", "Voxels changed", "", true, true},
+    {"surface.self_intersections", "Surface crossings", "", true, false},
+    {"surface.area_white", "White area", "mm\u00b2", true, true},
+    {"surface.area_pial", "Pial area", "mm\u00b2", true, true},
+    {"unfold.region_area", "Patch area", "mm\u00b2", true, false},
+    {"unfold.visibility_initial", "Visibility before", "", true, false},
+    {"unfold.visibility_final", "Visibility after", "", true, true},
+    {"unfold.seen_initial", "Seen before", "", true, false},
+    {"unfold.seen_final", "Seen after", "", true, true},
+    {"unfold.area_error_mean", "Area error, mean", "", true, true},
+    {"unfold.edge_strain_mean", "Edge strain, mean", "", true, true},
+    {"unfold.self_intersections_final", "Patch crossings", "", true, false},
+    {"unfold.iterations", "Iterations of the unfolding", "", true, false},
+    {"unfold.stop_reason", "Why the unfolding stopped", "", true, false},
+    {"rating.wrong", "Places rated wrong", "", true, false},
+    {"rating.unsure", "Places rated unsure", "", true, false},
+    {"rating.right", "Places rated right", "", true, false},
+    {"thickness.thickness_median", "Thickness, median of voxels", "mm", false, false},
+    {"surface.volume_white", "Volume inside the white surface", "mm\u00b3", false, true},
+    {"thickness.traced_fraction", "Trajectories followed, share", "", false, true},
+    {"register.folding_correlation_after", "Correlation of sulcal depth", "", false, true},
+    {"group.distance_thickness", "Thickness, distance from the group", "z", false, true},
+    {"group.distance_sulc", "Sulcal depth, distance from the group", "z", false, true},
+    {"group.distance_area", "Area, distance from the group", "z", false, true},
+};
 
 /// Steps whose numbers make a row.
 constexpr const char* kSteps[] = {"segment", "thickness", "surface", "register", "unfold"};
-
-/// Numbers that should be alike in all rows.
-constexpr const char* kComparedColumns[] = {"thickness.thickness_mean",
-                                            "surface.thickness_mean",
-                                            "surface.area_white",
-                                            "surface.area_pial",
-                                            "surface.defects_corrected",
-                                            "surface.voxels_changed",
-                                            "unfold.area_error_mean",
-                                            "unfold.edge_strain_mean",
-                                            "unfold.visibility_final",
-                                            "unfold.seen_final",
-                                            "thickness.traced_fraction",
-                                            "surface.volume_white",
-                                            "register.folding_correlation_after",
-                                            "group.distance_thickness",
-                                            "group.distance_sulc",
-                                            "group.distance_area"};
 
 constexpr double kFar = 3.5;            // robust z [IglewiczHoaglin1993]
 constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say little
@@ -264,13 +255,19 @@ std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subjec
   return rows;
 }
 
+const KnownColumn* knownColumn(const std::string& name) {
+  const auto* known = std::ranges::find(kColumns, name, &KnownColumn::name);
+  return known == std::end(kColumns) ? nullptr : known;
+}
+
 bool isCompared(const std::string& column) {
-  return isRegionMean(column) ||
-         std::ranges::find(kComparedColumns, column) != std::end(kComparedColumns);
+  const KnownColumn* known = knownColumn(column);
+  return isRegionMean(column) || (known && known->compared);
 }
 
 bool isFirst(const std::string& column) {
-  return std::ranges::find(kFirstColumns, column) != std::end(kFirstColumns);
+  const KnownColumn* known = knownColumn(column);
+  return known && known->first;
 }
 
 std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows) {
@@ -279,8 +276,8 @@ std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows) {
     for (const auto& [column, value] : row.values) all.insert(column);
   }
   std::vector<std::string> columns;
-  for (const char* first : kFirstColumns) {
-    if (all.erase(first)) columns.emplace_back(first);
+  for (const KnownColumn& known : kColumns) {
+    if (known.first && all.erase(known.name)) columns.emplace_back(known.name);
   }
   columns.insert(columns.end(), all.begin(), all.end());
   std::stable_partition(columns.begin(), columns.end(),

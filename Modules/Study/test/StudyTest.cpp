@@ -178,13 +178,13 @@ TEST_F(Study, ExportsCarryBidsNamesAndSidecars) {
             std::string::npos);
   EXPECT_NE(get("out/dataset_description.json").find("\"raw\": \"..\""), std::string::npos);
 
-  // What a run no longer has goes, with its sidecar; patches of a study carry their region.
+  // What a run no longer has goes, with its sidecar.
   fs::remove(folder_ / "run/surface/pial.surf.gii");
-  exportRun(folder_ / "run", folder_ / "out", participant, "L", origin, "hand");
+  exportRun(folder_ / "run", folder_ / "out", participant, "L", origin);
   EXPECT_FALSE(fs::exists(folder_ / "out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.surf.gii"));
   EXPECT_FALSE(fs::exists(folder_ / "out/sub-01/ses-a/anat/sub-01_ses-a_hemi-L_pial.json"));
   EXPECT_TRUE(fs::exists(folder_ / "out/sub-01/ses-a/anat" /
-                         "sub-01_ses-a_hemi-L_label-hand_desc-unfold_midthickness.surf.gii"));
+                         "sub-01_ses-a_hemi-L_desc-unfold_midthickness.surf.gii"));
 }
 
 TEST_F(Study, FailedRunsAreRowsToo) {

@@ -5,7 +5,6 @@
 #include "Explica/Unfolding/Unfold.h"
 
 #include <string>
-#include <type_traits>
 
 namespace explica::unfolding {
 namespace {
@@ -18,43 +17,6 @@ std::string magic() {
   for (const TermInfo& info : kTerms) text += " " + std::string(info.name);
   return text + "\n";
 }
-
-/// Whole numbers are -1 at least.
-struct Writing {
-  StateWriter& file;
-  template <class Number>
-  void operator()(const Number& value) const {
-    if constexpr (std::is_floating_point_v<Number>) {
-      file.number(value);
-    } else {
-      file.count(static_cast<std::int64_t>(value) + 1);
-    }
-  }
-  void operator()(const Positions& rows) const { file.rows(rows); }
-  void operator()(const Eigen::VectorXd& list) const { file.rows(list); }
-  template <class Item>
-  void size(const std::vector<Item>& list) const {
-    file.count(static_cast<std::int64_t>(list.size()));
-  }
-};
-
-struct Reading {
-  StateReader& file;
-  template <class Number>
-  void operator()(Number& value) const {
-    if constexpr (std::is_floating_point_v<Number>) {
-      value = file.number();
-    } else {
-      value = static_cast<Number>(file.count() - 1);
-    }
-  }
-  void operator()(Positions& rows) const { rows = file.rows<Positions>(); }
-  void operator()(Eigen::VectorXd& list) const { list = file.rows<Eigen::VectorXd>(); }
-  template <class Item>
-  void size(std::vector<Item>& list) const {
-    list.resize(static_cast<std::size_t>(file.count()));
-  }
-};
 
 template <class Access, class Record>
 void visitRecord(const Access& access, Record& r) {
@@ -97,7 +59,7 @@ void visitRun(const Access& access, Run& run) {
 
 void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   StateWriter file;
-  visitRun(Writing{file}, checkpoint);
+  visitRun(StateWriting{file}, checkpoint);
   if (checkpoint.state.directions.rows() > 0) {
     file.rows(checkpoint.state.directions);
     file.numbers(checkpoint.notes);
@@ -108,7 +70,7 @@ void writeCheckpoint(const std::filesystem::path& path, const Checkpoint& checkp
 Checkpoint readCheckpoint(const std::filesystem::path& path) {
   StateReader file(path, magic(), "an unfolding");
   Checkpoint checkpoint;
-  visitRun(Reading{file}, checkpoint);
+  visitRun(StateReading{file}, checkpoint);
   if (!file.atEnd()) {
     checkpoint.state.directions = file.rows<Positions>();
     checkpoint.notes = file.numbers();

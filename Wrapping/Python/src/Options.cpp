@@ -56,11 +56,9 @@ py::object pythonOf(const provenance::Json& value) {
   return list;
 }
 
-void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& keywords,
-                     const std::vector<std::string>& alsoAllowed) {
+void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& keywords) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    if (std::find(alsoAllowed.begin(), alsoAllowed.end(), name) != alsoAllowed.end()) continue;
     const auto option = std::find_if(options.begin(), options.end(), [&](const auto& candidate) {
       return pythonName(candidate.name) == name;
     });

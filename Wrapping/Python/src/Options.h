@@ -20,15 +20,13 @@ namespace py = pybind11;
 /// Sets options from keyword arguments; Python's max_iterations is the command line's
 /// --max-iterations.
 /// @throws TypeError  unknown keyword: lists the known ones
-void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& keywords,
-                     const std::vector<std::string>& alsoAllowed = {});
+void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& keywords);
 
 /// An options struct with its defaults and the keywords given.
 template <class Options>
-[[nodiscard]] Options optionsOf(const py::kwargs& keywords,
-                                const std::vector<std::string>& alsoAllowed = {}) {
+[[nodiscard]] Options optionsOf(const py::kwargs& keywords) {
   Options options;
-  setFromKeywords(provenance::listOptions(options), keywords, alsoAllowed);
+  setFromKeywords(provenance::listOptions(options), keywords);
   return options;
 }
 

@@ -13,14 +13,6 @@ std::string textOf(const Json& value, const std::string& unit) {
   return value.is_number() ? shown(value.get<double>(), unit).text : readable(value);
 }
 
-/// "1 to 5 mm (Fischl 2000)", of "Mean thickness: 2.6 mm; expected 1 to 5 mm (Fischl 2000)".
-std::string expectedIn(const std::string& sentence) {
-  const std::size_t at = sentence.rfind("; expected ");
-  if (at != std::string::npos) return sentence.substr(at + 11);
-  const std::size_t usual = sentence.rfind("; usual ");
-  return usual == std::string::npos ? "" : sentence.substr(usual + 8);
-}
-
 /// What the record says of the numbers that belong at the head of a page.
 void listDescribed(const ResultFolder& results, const std::vector<std::string>& sides,
                    report::ReportFindings& findings) {
@@ -37,8 +29,7 @@ void listDescribed(const ResultFolder& results, const std::vector<std::string>& 
       if (isNew) {
         findings.rows.push_back({meaning.value("title", key), shown(0, unit).unit,
                                  std::vector<std::string>(step.side().empty() ? 1 : sides.size()),
-                                 meaning.value("meaning", ""),
-                                 expectedIn(meaning.value("sentence", "")),
+                                 meaning.value("meaning", ""), meaning.value("expected", ""),
                                  isMany ? inWords(step.command) : ""});
       }
       std::string text = textOf(step.summary[key], unit);

@@ -60,7 +60,8 @@ struct Parameter {
   bool namesOutput = false;           ///< the value says where something is written, beside --out
   bool severalWords = false;          ///< a list option that takes all words up to the next option
   bool oneByOne = false;              ///< its files meet those of other options, but not each other
-  bool ofAnother = false;             ///< its files are another person's, of another mesh
+  const bool* ofAnother = nullptr;    ///< not null: its files are another person's, of another
+                                      ///< mesh, and if it is true of any side
   std::optional<Hemisphere> side;     ///< of its files, whatever the other options' are of
   std::vector<std::string> excludes;  ///< options beside which it has no effect, or they have none
   std::vector<std::string>
@@ -140,8 +141,9 @@ class Declaration {
   Declaration& namesOutput(std::string_view name);
   /// Says that the files of an option are of this side of the brain: --left.
   Declaration& ofSide(std::string_view name, Hemisphere side);
-  /// Says that an option's files are another person's: of another mesh; with --mirror, of any side.
-  Declaration& ofAnother(std::string_view name);
+  /// Says that an option's files are another person's: of another mesh; while `*mirrored`, of any
+  /// side.
+  Declaration& ofAnother(std::string_view name, const bool& mirrored);
   /// Says that each of an option's files stands for itself, so that they may be of both sides.
   Declaration& oneByOne(std::string_view name);
   /// Says that an option and any of the others would leave one of the two without effect.

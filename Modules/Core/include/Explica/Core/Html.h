@@ -11,4 +11,7 @@ namespace explica {
 /// replaced.
 [[nodiscard]] std::string escapeHtml(std::string_view text, std::string_view escaped = "&<>\"'");
 
+/// JSON as it may stand in a script element.
+[[nodiscard]] std::string scriptSafe(std::string json);
+
 }  // namespace explica

@@ -67,7 +67,9 @@ struct Result {
   [[nodiscard]] std::optional<Judgement> judgement() const;
   /// "expected 1 to 5 mm (Fischl 2000)"
   [[nodiscard]] std::string expectation(const Limit& limit) const;
-  /// "Mean thickness: 5.4 mm; expected 1 to 5 mm (Fischl 2000)": the limit that judges.
+  /// "1 to 5 mm (Fischl 2000)": the limit that judges; empty where the value is not known.
+  [[nodiscard]] std::string expected() const;
+  /// "Mean thickness: 5.4 mm; expected 1 to 5 mm (Fischl 2000)"
   [[nodiscard]] std::string sentence() const;
 };
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace explica {
@@ -65,6 +66,57 @@ class StateReader {
  private:
   std::string bytes_, name_, what_;
   std::size_t at_ = 0;
+};
+
+/// Takes a run's numbers to a file.  With StateReading in its place the same list of members, a
+/// template, reads them; whole numbers are -1 at least.
+struct StateWriting {
+  StateWriter& file;
+  template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  void operator()(const Number& value) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      file.number(value);
+    } else {
+      file.count(static_cast<std::int64_t>(value) + 1);
+    }
+  }
+  template <class Derived>
+  void operator()(const Eigen::PlainObjectBase<Derived>& rows) const {
+    file.rows(rows);
+  }
+  void operator()(const std::uint64_t& sum) const { file.raw(&sum, sizeof sum); }
+  void operator()(const std::vector<std::int32_t>& list) const { file.indices(list); }
+  void operator()(const std::vector<double>& list) const { file.numbers(list); }
+  template <class Item>
+  void size(const std::vector<Item>& list) const {
+    file.count(static_cast<std::int64_t>(list.size()));
+  }
+};
+
+/// Takes a run's numbers from a file.
+struct StateReading {
+  StateReader& file;
+  template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  void operator()(Number& value) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      value = file.number();
+    } else {
+      value = static_cast<Number>(file.count() - 1);
+    }
+  }
+  template <class Derived>
+  void operator()(Eigen::PlainObjectBase<Derived>& rows) const {
+    rows.derived() = file.rows<Derived>();
+  }
+  void operator()(std::uint64_t& sum) const { file.raw(&sum, sizeof sum); }
+  void operator()(std::vector<std::int32_t>& list) const { list = file.indices(); }
+  void operator()(std::vector<double>& list) const { list = file.numbers(); }
+  template <class Item>
+  void size(std::vector<Item>& list) const {
+    list.resize(static_cast<std::size_t>(file.count()));
+  }
 };
 
 }  // namespace explica

@@ -20,9 +20,8 @@ namespace explica::io {
 ///                       10 km from the origin, an open line, two loops
 [[nodiscard]] Positions2 readPolygon(const std::filesystem::path& path);
 
-/// Writes `x,y` and the maps as further columns, one vertex a line; numbers give back every double.
-void writePolygonCsv(const std::filesystem::path& path, const Positions2& polygon,
-                     const std::vector<VertexMap>& vertexMaps = {});
+/// Writes `x,y`, one vertex a line; numbers give back every double.
+void writePolygonCsv(const std::filesystem::path& path, const Positions2& polygon);
 
 /// Writes XML polydata: vertices at z = 0, one line cell an edge (i, i + 1).
 /// @param edgeMaps  one value an edge: the edge from vertex i to vertex i + 1

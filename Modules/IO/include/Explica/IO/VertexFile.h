@@ -19,6 +19,14 @@ enum class VertexFileKind { Maps, Labels, Surface };
 /// @throws IOError  it cannot be read as maps nor as a surface
 [[nodiscard]] VertexFileKind vertexFileKind(const std::filesystem::path& path);
 
+/// True if a file's name is that of labels: .label.gii, .annot, .label, packed or not.
+[[nodiscard]] bool namesLabels(const std::filesystem::path& path);
+
+/// A number a vertex: of a file of labels their keys, else its first map.
+/// @throws IOError, InvalidInput  neither, or of another number of vertices
+[[nodiscard]] Eigen::VectorXd readVertexNumbers(const std::filesystem::path& path,
+                                                Eigen::Index vertexCount);
+
 /// Name of a result made of a file, with what it is put in, in front of a BIDS name's suffix or
 /// after any other name, and in the file's kind: "lh.thickness" with "fwhm-5" is
 /// "lh.thickness_fwhm-5", "sub-01_hemi-L_thickness.shape.gii" is

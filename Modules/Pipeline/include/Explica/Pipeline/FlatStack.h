@@ -26,11 +26,6 @@ struct FlatStack {
   std::vector<Tile> tiles;                   ///< from white to pial, u to the right, v upwards
 };
 
-struct FlatStackOptions {
-  int tileWidth = 300;  ///< pixels, about
-  int mostTiles = 12;   ///< if there are more depths, so many evenly among them
-};
-
 /// Stacks that `explica flatten --volumes` has left in a folder: flat_NAME.nii.gz, by name.
 [[nodiscard]] std::vector<std::filesystem::path> flatStackFiles(
     const std::filesystem::path& folder);
@@ -38,7 +33,6 @@ struct FlatStackOptions {
 /// Pictures of a stack's depths on one scale; labels (`--nearest`) in colours of their own.  Pale
 /// blue: off the map, or not known.
 /// @throws InvalidInput, IOError  no volume
-[[nodiscard]] FlatStack drawFlatStack(const std::filesystem::path& file,
-                                      const FlatStackOptions& options = {});
+[[nodiscard]] FlatStack drawFlatStack(const std::filesystem::path& file);
 
 }  // namespace explica::pipeline

@@ -63,9 +63,6 @@ struct Region {
 /// Area with sign, mm^2: positive if the closed curve runs counter-clockwise.
 [[nodiscard]] double signedArea(const Positions2& polygon);
 
-/// True if a closed curve winds around a point an odd number of times.
-[[nodiscard]] bool encloses(const Curve& curve, const Point2& point);
-
 /// Least distance of a point from a curve's edges, mm.
 [[nodiscard]] double distanceTo(const Curve& curve, const Point2& point);
 

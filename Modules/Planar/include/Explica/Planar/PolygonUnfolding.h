@@ -10,6 +10,7 @@
 #include "Explica/Planar/PolygonVisibility.h"
 
 #include <array>
+#include <filesystem>
 #include <vector>
 
 namespace explica::planar {
@@ -117,6 +118,13 @@ struct PolygonCheckpoint {
   int verticesMerged = 0;
   int firstCrossing = -1;
 };
+
+/// Writes a checkpoint: little-endian numbers and a check sum.
+/// @throws EnvironmentError  the file cannot be written
+void writeCheckpoint(const std::filesystem::path& path, const PolygonCheckpoint& checkpoint);
+
+/// @throws IOError  missing, truncated or no checkpoint
+[[nodiscard]] PolygonCheckpoint readCheckpoint(const std::filesystem::path& path);
 
 /// The unfolded polygon and how it came about.
 struct PolygonUnfolding {

@@ -12,7 +12,7 @@ namespace explica::provenance {
 
 /// Title, unit, meaning and limits of a result, and, where it has a value, what its limits say of
 /// it: {"title", "unit", "meaning", "start", "head", "compared", "limits", "judgement",
-/// "sentence"}; what does not apply is left out.
+/// "sentence", "expected"}; what does not apply is left out.
 [[nodiscard]] Json meaningOf(const Result& result);
 
 }  // namespace explica::provenance

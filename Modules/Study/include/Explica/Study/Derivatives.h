@@ -4,10 +4,15 @@
 
 #include "Explica/Study/BidsDataset.h"
 
+#include <array>
 #include <filesystem>
 #include <string>
 
 namespace explica::study {
+
+/// The steps of `explica run`, by the names of their folders, in their order.
+inline constexpr std::array kRunSteps = {"segment",  "thickness",  "surface", "sphere", "register",
+                                         "resample", "parcellate", "regions", "unfold"};
 
 /// Where a derivative's files came from.
 struct DerivativeOrigin {
@@ -28,13 +33,11 @@ void describeDerivatives(const std::filesystem::path& out, const DerivativeOrigi
 /// from an earlier run.
 /// @param run         folder of `explica run`
 /// @param hemisphere  "L" or "R"
-/// @param region      of the patch, where a study names several: "hand"; may be empty
 /// @return files written, relative to `out`, without sidecars
 std::vector<std::filesystem::path> exportRun(const std::filesystem::path& run,
                                              const std::filesystem::path& out,
                                              const Participant& participant,
                                              const std::string& hemisphere,
-                                             const DerivativeOrigin& origin,
-                                             const std::string& region = "");
+                                             const DerivativeOrigin& origin);
 
 }  // namespace explica::study

@@ -71,6 +71,17 @@ inline constexpr std::string_view kRegionPrefix = "region.";
 /// Begins the name of a column of participants.tsv.
 inline constexpr std::string_view kAboutPrefix = "participant.";
 
+/// A column that the table and its page know.
+struct KnownColumn {
+  const char* name;
+  const char* words;  ///< as people call it
+  const char* unit;
+  bool first;     ///< of those that tell how good a run is, which come first
+  bool compared;  ///< alike in all rows, so that one far off is marked
+};
+/// @return null for all others
+[[nodiscard]] const KnownColumn* knownColumn(const std::string& name);
+
 /// Columns of all rows: those that come first, others by name, regions last.
 [[nodiscard]] std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows);
 [[nodiscard]] bool isRegion(const std::string& column);

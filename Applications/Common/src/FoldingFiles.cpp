@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Folding.h"
+#include "Explica/Application/FoldingFiles.h"
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/MeshMeasures.h"
