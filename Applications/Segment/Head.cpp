@@ -10,6 +10,7 @@
 #include "Explica/Registration/HeadRegistration.h"
 #include "Explica/Registration/SkullStripping.h"
 #include "Explica/Registration/Summary.h"
+#include "Explica/Segmentation/Plausibility.h"
 #include "TemplateFiles.h"
 
 #include <cmath>
@@ -120,10 +121,14 @@ Head fitTemplate(Context& context, Judge& judge, const SegmentSettings& s,
   const auto found = registered(context, s, mask.size() != 0 ? within(image, mask) : image,
                                 loaded.volumes, stripped);
   summary.fluidOfWhite = found.fluidOfWhite;
-  if (std::isfinite(found.fluidOfWhite)) judge.require("fluid-of-white", found.fluidOfWhite);
   if (!s.templateTransform) summary.information = found.information;
   summary.correlation = found.agreement.correlation;
   summary.leastJacobian = found.agreement.leastJacobian;
+  // Of a T1 the template has its tissues right wherever it agrees.
+  const bool agrees = !segmentation::judge("registration", found.agreement.correlation);
+  if (!agrees && std::isfinite(found.fluidOfWhite)) {
+    judge.require("fluid-of-white", found.fluidOfWhite);
+  }
   judge.flag("registration", found.agreement.correlation);
   const double stretch = registration::stretchOf(found.transform.affine);
   summary.stretch = stretch;
