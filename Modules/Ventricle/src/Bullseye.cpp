@@ -22,9 +22,9 @@ using report::kWhite;
 using report::Point2;
 using report::TextAnchor;
 
-constexpr double kPanel = 440, kHeight = 590;                                   // of one bull's-eye
-constexpr double kRadius = 150, kMiddleX = 190, kMiddleY = 270;                 // pixels
-constexpr double kBarX = 385, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
+constexpr double kPanel = 500, kHeight = 590;                                   // of one bull's-eye
+constexpr double kRadius = 150, kMiddleX = 220, kMiddleY = 270;                 // pixels
+constexpr double kBarX = 440, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
 constexpr Colour kPale = {0.78F, 0.79F, 0.80F};  // what is not known
 

@@ -91,4 +91,26 @@ TEST(Reference, TheBullseyeNamesTheRanges) {
   EXPECT_NE(eye.find("middle 4.0, healthy 4.4 (SD 1.4) mm"), std::string::npos);
 }
 
+TEST(Reference, TheBullseyesOfAHeartKeepApart) {
+  Beat beat = beatOf(6, 10);
+  beat.orientation.source = OrientationSource::RightVentricle;
+  for (Frame& frame : beat.frames) {
+    for (Segment& row : frame.segments->rows) {
+      row.voxels = 2000;
+      row.leftOut = 3500;  // 59500 of 93500
+      row.thickening = 67;
+    }
+  }
+  const report::Picture seen = bullseye(beat).pixels;
+  constexpr int kMargin = 12;  // pixels that stay white beside what is next to them
+  for (int panel = 0; panel <= 3; ++panel) {
+    const int middle = seen.width * panel / 3;
+    for (int x = std::max(0, middle - kMargin); x < std::min(seen.width, middle + kMargin); ++x) {
+      for (int y = 0; y < seen.height; ++y) {
+        ASSERT_EQ(static_cast<int>(*seen.pixel(x, y)), 255) << "panel " << panel << " at " << x;
+      }
+    }
+  }
+}
+
 }  // namespace explica::ventricle
