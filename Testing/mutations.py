@@ -175,6 +175,10 @@ ALL = [
     Mutation("Modules/Viewer/src/Session.cpp",
              "checkpoint.history = self_->history(number);",
              "checkpoint.history = self_->history(number + 1);", "ExplicaViewerUnitTests"),
+    Mutation("Modules/Surface/src/TopologyCorrection.cpp", "if (lost > filled) {", "if (lost < filled) {",
+             "ExplicaSurfaceUnitTests", "TopologyCorrection*"),
+    Mutation("Modules/Surface/src/EdgeSearch.cpp", "= arc - kPartial * voxel_;", "= arc + kPartial * voxel_;",
+             "ExplicaSurfaceUnitTests", "*PartVoxel*"),
 ]
 
 
