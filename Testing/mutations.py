@@ -177,7 +177,7 @@ ALL = [
              "checkpoint.history = self_->history(number + 1);", "ExplicaViewerUnitTests"),
     Mutation("Modules/Surface/src/TopologyCorrection.cpp", "if (lost > filled) {", "if (lost < filled) {",
              "ExplicaSurfaceUnitTests", "TopologyCorrection*"),
-    Mutation("Modules/Surface/src/EdgeSearch.cpp", "= arc - kPartial * voxel_;", "= arc + kPartial * voxel_;",
+    Mutation("Modules/Surface/src/EdgeSearch.cpp", "<< arc - kPartial * size, size;", "<< arc + kPartial * size, size;",
              "ExplicaSurfaceUnitTests", "*PartVoxel*"),
 ]
 

@@ -19,7 +19,8 @@ constexpr double kDeep = 2;           // voxels inside the border: white matter
 constexpr double kMost = 0.5;         // of the ribbon a border goes outward in one pass
 constexpr double kFarthest = 4;       // voxels inward, all passes together
 constexpr int kSmooth = 1;            // places on each side over which a slope is taken
-/// Voxels before a mask's edge that a voxel there changes, between its centre and the next one's.
+/// Voxels, as long as they are along the way, before a mask's edge that a voxel there changes:
+/// between its centre and the next one's.
 constexpr double kPartial = 1.5;
 /// Least fall a voxel, of the usual contrast, for which a border leaves such voxels: a quarter of
 /// that of an edge seen through a point spread of a voxel's deviation.
@@ -92,17 +93,22 @@ class PathSearch {
     return usual_.sign * valueAt(image_, along(paths_[v], arc));
   }
 
-  /// How far along each trajectory voxels are seen that a mask's edge leaves whole, mm.
-  [[nodiscard]] Eigen::VectorXd wholeUpTo(const MaskedImage& masked) const {
-    Eigen::VectorXd whole = Eigen::VectorXd::Constant(way_.size(), kInfinity);
+  /// How far along each trajectory voxels are seen that a mask's edge leaves whole, and the size of
+  /// a voxel that way, mm.
+  [[nodiscard]] Eigen::MatrixXd wholeUpTo(const MaskedImage& masked) const {
+    Eigen::MatrixXd whole = Eigen::MatrixXd::Constant(way_.size(), 2, kInfinity);
     if (masked.seen.size() == 0) return whole;
+    const Grid& grid = masked.seen.grid;
     const double step = kProfileStep * voxel_;
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
-      const double last = paths_[v].length() + kPartial * voxel_;
+      const double last = paths_[v].length() + kPartial * grid.spacing.maxCoeff();
       for (double arc = 0; arc < last; arc += step) {
-        if (masked.seenAt(along(paths_[v], arc)) >= 0.5) continue;
-        whole[static_cast<Eigen::Index>(v)] = arc - kPartial * voxel_;
+        const Point end = along(paths_[v], arc);
+        if (masked.seenAt(end) >= 0.5) continue;
+        const Vector outward = (end - along(paths_[v], arc - voxel_)).normalized();
+        const double size = grid.spacing.cwiseProduct(grid.direction.transpose() * outward).norm();
+        whole.row(static_cast<Eigen::Index>(v)) << arc - kPartial * size, size;
         return;
       }
     });
@@ -139,12 +145,13 @@ class PathSearch {
         slope[k] = mean(row, k - kSmooth) - mean(row, k + kSmooth);
       }
       double best = 0;
-      const double usual = kLeastFall * 2 * kSmooth * kProfileStep * (usual_.white - usual_.grey);
-      const double least = way_[row] > whole_[row] ? usual : 0;
+      const double whole = whole_(row, 0), apart = 2 * kSmooth * kProfileStep * voxel_;
+      const double usual = kLeastFall * apart / whole_(row, 1) * (usual_.white - usual_.grey);
+      const double least = way_[row] > whole ? usual : 0;
       for (int k = kSmooth + 1; k < count_ - kSmooth - 1; ++k) {
         const double place = (first_ + k) * kProfileStep;
         if (place * voxel_ > kMost * lengthOf(v) || !(mean(row, k) > usual_.grey)) continue;
-        if (way_[row] + place * voxel_ > whole_[row]) continue;
+        if (way_[row] + place * voxel_ > whole) continue;
         if (slope[k] < least || slope[k] < slope[k - 1] || slope[k] < slope[k + 1]) continue;
         const double off = place / options_.likely;
         const double score = slope[k] * std::exp(-0.5 * off * off);
@@ -185,7 +192,7 @@ class PathSearch {
   Usual usual_;
   Eigen::VectorXd way_;
   int first_, count_;
-  Eigen::VectorXd whole_;  ///< see wholeUpTo()
+  Eigen::MatrixXd whole_;  ///< see wholeUpTo()
 };
 
 }  // namespace
