@@ -477,9 +477,9 @@ namespace {
 
 constexpr double kBrightestFluid = 10;  // over white matter, of any contrast
 
-CorticalSurfaces build(const CorticalTissue& tissue, const BorderImages* images,
+CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
                        const SurfaceOptions& options, const Monitor& monitor) {
-  if (!tissue.hasGrey) {
+  if (!given.hasGrey) {
     throw InvalidInput("grey: no voxel found; middle and outer surface need grey matter");
   }
   if (!(options.fluid >= 0 && options.fluid <= kBrightestFluid)) {
@@ -487,6 +487,9 @@ CorticalSurfaces build(const CorticalTissue& tissue, const BorderImages* images,
                        " given; 0, or the brightness of fluid over that of white matter, at most " +
                        std::to_string(static_cast<int>(kBrightestFluid)));
   }
+  // An image tells where white matter ends in cortex that was taken for it.
+  const bool isSearched = images != nullptr && given.byBrightness;
+  const CorticalTissue tissue = isSearched ? withCortexAllAround(given) : given;
   CorticalSurfaces result;
   result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
   result.seconds = result.white.seconds;

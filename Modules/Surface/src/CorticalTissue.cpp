@@ -362,6 +362,33 @@ double bareShare(const CorticalTissue& tissue) {
   return all > 0 ? bare / all : 0;
 }
 
+CorticalTissue withCortexAllAround(CorticalTissue tissue) {
+  const Grid& grid = tissue.white.grid;
+  Mask near(grid);  // what is beside bare white matter
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (!(tissue.white[v] > 0)) continue;
+    const auto neighbours = grid.neighbours(v);
+    const bool isBare = std::any_of(neighbours.begin(), neighbours.end(), [&](std::int64_t w) {
+      return w >= 0 && !(tissue.tissue[w] > 0);
+    });
+    if (!isBare) continue;
+    const auto at = grid.subscripts(v);
+    for (int n = 0; n < 27; ++n) {
+      const int i = at[0] + n % 3 - 1, j = at[1] + n / 3 % 3 - 1, k = at[2] + n / 9 - 1;
+      if (grid.contains(i, j, k)) near(i, j, k) = 1;
+    }
+  }
+  const Components places = componentsOf(near);
+  const std::int32_t medialWall = places.largest();
+  const LevelSet outer = distanceLevelOf(tissue.tissue);
+  const auto voxel = static_cast<float>(grid.spacing.maxCoeff() / bandOf(grid));
+  for (std::size_t v = 0; v < near.size(); ++v) {
+    if (!near[v] || places.number[v] == medialWall) continue;
+    tissue.white[v] = offZero(std::min(tissue.white[v], outer[v] - voxel));
+  }
+  return tissue;
+}
+
 CorticalTissue tissueFromLabels(const Volume<Label>& labels, const TissueOptions& options,
                                 const Monitor& monitor) {
   return tissueFromMasks(masksFromLabels(labels, options, monitor), options.closeEdges, monitor);

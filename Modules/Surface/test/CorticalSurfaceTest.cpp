@@ -486,6 +486,40 @@ TEST(CorticalSurface, APartVoxelAtTheMasksEdgeIsNoWhiteBorder) {
   }
 }
 
+TEST(CorticalSurface, CortexThatWasAllTakenForWhiteMatterIsFound) {
+  // Upwards, the shares have white matter up to the fluid where the image shows 2.5 mm of bright
+  // cortex.  Downwards there is none, as at a medial wall, and none may be made.
+  const auto up = [](const Point& p) { return p.z() / p.norm(); };
+  const auto hasNone = [&](const Point& p) { return up(p) < -0.8; };
+  const auto outer = [&](const Point& p) { return hasNone(p) ? 14.0 : 16.5; };
+  const auto inner = [&](const Point& p) { return up(p) > 0.95 ? 16.5 : 14.0; };
+  for (const Vector& spacing : {Vector(1, 1, 1), Vector(0.8, 0.8, 1.4), Vector(1.3, 1, 1)}) {
+    const Grid grid = lattice(48, spacing);
+    const auto image = volumeOf(grid, [&](const Point& p) {
+      const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+      const double r = p.norm(), grey = up(p) > 0.95 ? 95 : 83;
+      return static_cast<float>(40 + (grey - 40) * step(outer(p) - r) +
+                                (110 - grey) * step(14 - r));
+    });
+    const CorticalTissue tissue =
+        tissueFromShares(volumeOf(grid, [&](const Point& p) { return shareOf(p, inner(p), 4); }),
+                         volumeOf(grid, [&](const Point& p) { return shareOf(p, outer(p), 4); }));
+    SurfaceOptions options;
+    options.faces = 6000;
+    const auto made = buildSurfaces(tissue, image, options);
+    expectSound(made.white.mesh);
+    std::array<double, 2> sum = {}, count = {};
+    for (Eigen::Index v = 0; v < made.thickness.size(); ++v) {
+      const double z = up(made.mid.positions.row(v));
+      if (z < 0.96 && z > -0.9) continue;
+      sum[z < 0] += made.thickness[v];
+      ++count[z < 0];
+    }
+    EXPECT_NEAR(sum[0] / count[0], 2.5, 0.6) << spacing.transpose();
+    EXPECT_EQ(sum[1], 0) << spacing.transpose();
+  }
+}
+
 TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
   // Upwards, dura as bright as grey matter lies on the cortex without fluid between, and the labels
   // took half a millimetre of it for cortex.  In the second image it is dark, and fluid is bright,

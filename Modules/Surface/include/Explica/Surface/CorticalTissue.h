@@ -127,6 +127,11 @@ struct CorticalTissue : TissueFacts {
 /// no grey matter on the other side; 0 for an empty tissue.
 [[nodiscard]] double bareShare(const CorticalTissue& tissue);
 
+/// The tissue with a voxel of grey matter wherever white matter lies bare beside what is neither,
+/// but for the largest such place.  Cortex is one sheet with one hole, at the medial wall;
+/// elsewhere a classifier has taken all of a thin, myelinated cortex for white matter.
+[[nodiscard]] CorticalTissue withCortexAllAround(CorticalTissue tissue);
+
 /// Both in one.
 [[nodiscard]] CorticalTissue tissueFromLabels(const Volume<Label>& labels,
                                               const TissueOptions& options = {},
