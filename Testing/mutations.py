@@ -177,6 +177,10 @@ ALL = [
              "checkpoint.history = self_->history(number + 1);", "ExplicaViewerUnitTests"),
     Mutation("Modules/Surface/src/TopologyCorrection.cpp", "if (lost > filled) {", "if (lost < filled) {",
              "ExplicaSurfaceUnitTests", "TopologyCorrection*"),
+    Mutation("Modules/Surface/src/CorticalTissue.cpp",
+             "if (!near[v] || places.number[v] == medialWall) continue;",
+             "if (!near[v] || places.number[v] != medialWall) continue;",
+             "ExplicaSurfaceUnitTests", "*CortexThatWasAllTaken*"),
     Mutation("Modules/Surface/src/EdgeSearch.cpp", "<< arc - kPartial * size, size;", "<< arc + kPartial * size, size;",
              "ExplicaSurfaceUnitTests", "*PartVoxel*"),
 ]

@@ -4,11 +4,11 @@
 #include "Frames.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/IO/VolumeSeries.h"
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -105,9 +105,7 @@ std::vector<Volume<float>> readImages(const std::vector<std::string>& paths,
 Chosen chooseFrames(const std::string& wanted, const std::vector<Volume<Label>>& hearts) {
   const auto count = static_cast<int>(hearts.size());
   Chosen chosen;
-  std::string lower = wanted;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string lower = lowerCase(wanted);
   if (lower == "all") {
     for (int f = 0; f < count; ++f) chosen.numbers.push_back(f);
     return chosen;

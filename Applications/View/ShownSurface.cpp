@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ShownSurface.h"
 #include "Explica/Core/Folders.h"
-
-#include <algorithm>
-#include <cctype>
+#include "Explica/Core/Text.h"
 
 namespace explica::app {
 namespace {
@@ -13,10 +11,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kValid = "valid.shape.gii";
 
-bool saysThickness(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text.find("thick") != std::string::npos;
+bool saysThickness(const std::string& text) {
+  return lowerCase(text).find("thick") != std::string::npos;
 }
 
 /// 1 where maps beside it hold, by one map for all of them; none where there is no such file.

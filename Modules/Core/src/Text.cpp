@@ -4,6 +4,7 @@
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
@@ -28,6 +29,11 @@ std::string printed(const char* pattern, ...) {
 
 std::string cellText(double value, const char* pattern) {
   return std::isfinite(value) ? printed(pattern, value) : "n/a";
+}
+
+std::string lowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
 }
 
 std::vector<std::string> cellsOf(std::string_view row, char separator) {

@@ -4,13 +4,13 @@
 #include "VolumeFormats.h"
 
 #include "ByteSource.h"
+#include "Explica/Core/Text.h"
 
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
 #include <Eigen/Geometry>
 
-#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,11 +22,6 @@ namespace {
 enum class ItkFormat { Nrrd, MetaImage };
 
 constexpr std::size_t kLongestHeader = 1 << 16;  // bytes; ITK's own headers have some hundred
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -79,7 +74,7 @@ TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFor
     const bool custom = format == ItkFormat::Nrrd && line.substr(mark).starts_with(":=");
     if (custom) continue;
     std::string key = trimmed(line.substr(0, mark));
-    if (format == ItkFormat::Nrrd) key = lower(key);
+    if (format == ItkFormat::Nrrd) key = lowerCase(key);
     if (format == ItkFormat::MetaImage && needsDimension(key) && header["NDims"].empty()) {
       failToRead(path, "its header states '" + key + "' before NDims");
     }
@@ -128,8 +123,8 @@ struct StoredData {
 std::uint64_t dataLimit(const std::filesystem::path& path, std::uint64_t room,
                         const StoredData& data) {
   std::uint64_t size = room;
-  if (!data.file.empty() && lower(data.file) != "local") {
-    if (data.file.find('%') != std::string::npos || lower(data.file).starts_with("list")) {
+  if (!data.file.empty() && lowerCase(data.file) != "local") {
+    if (data.file.find('%') != std::string::npos || lowerCase(data.file).starts_with("list")) {
       refuse(path, "spreads its data over several files; store it in one");
     }
     const std::filesystem::path beside = besideFile(path, data.file);
@@ -143,7 +138,7 @@ std::uint64_t dataLimit(const std::filesystem::path& path, std::uint64_t room,
 }
 
 StoredData nrrdData(const TextHeader& header) {
-  const std::string encoding = lower(header["encoding"]);
+  const std::string encoding = lowerCase(header["encoding"]);
   StoredData data{header["data file"].empty() ? header["datafile"] : header["data file"]};
   data.packed = encoding == "gzip" || encoding == "gz";
   data.text = !data.packed && encoding != "raw";
@@ -153,7 +148,7 @@ StoredData nrrdData(const TextHeader& header) {
 /// ITK's reader looks for billions of numbers, or too few, if a header is damaged.
 StoredData metaImageData(const std::filesystem::path& path, const TextHeader& header,
                          std::size_t room) {
-  const std::string kind = lower(header["ObjectType"]);
+  const std::string kind = lowerCase(header["ObjectType"]);
   if (!kind.empty() && kind != "image")
     refuse(path, "is a MetaIO " + kind + "; an image is needed");
   const auto dimension = parseNumber<std::size_t>(path, header["NDims"]);
@@ -180,7 +175,7 @@ StoredData metaImageData(const std::filesystem::path& path, const TextHeader& he
                            " values for '" + key + "'; " + std::to_string(length) + " are needed");
     }
   }
-  if (!lower(header["ElementType"]).starts_with("met_")) {
+  if (!lowerCase(header["ElementType"]).starts_with("met_")) {
     refuse(path, "has MetaImage type '" + header["ElementType"] + "'; a type of numbers is needed");
   }
   std::int64_t channels = 1;
@@ -193,15 +188,16 @@ StoredData metaImageData(const std::filesystem::path& path, const TextHeader& he
   if (!header["HeaderSize"].empty() && header["HeaderSize"] != "0") {
     refuse(path, "uses 'HeaderSize', which is not supported; store it anew");
   }
-  const bool packed = lower(header["CompressedData"]) == "true";
-  if (packed && lower(header["BinaryData"]) == "false") {
+  const bool packed = lowerCase(header["CompressedData"]) == "true";
+  if (packed && lowerCase(header["BinaryData"]) == "false") {
     failToRead(path, "its header says compressed text");
   }
-  const StoredData data{header["ElementDataFile"], packed, lower(header["BinaryData"]) == "false"};
+  const StoredData data{header["ElementDataFile"], packed,
+                        lowerCase(header["BinaryData"]) == "false"};
   if (data.file.empty()) failToRead(path, "its header does not name the data (ElementDataFile)");
   if (!header["CompressedDataSize"].empty()) {
     const auto size = parseNumber<std::int64_t>(path, header["CompressedDataSize"]);
-    if (size < 1 || (lower(data.file) == "local" && size > static_cast<std::int64_t>(room))) {
+    if (size < 1 || (lowerCase(data.file) == "local" && size > static_cast<std::int64_t>(room))) {
       failTruncated(path, "the packed data end too early");
     }
   }

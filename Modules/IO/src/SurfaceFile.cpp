@@ -10,16 +10,9 @@
 #include "SurfaceFormats.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace explica::io {
 namespace {
-
-std::string lowerCase(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
 
 bool hasEnding(const SurfaceFormat& format, const std::string& name) {
   return std::ranges::any_of(format.endings,

@@ -12,7 +12,6 @@
 
 #include <Eigen/LU>
 
-#include <cctype>
 #include <cmath>
 
 namespace explica::io {
@@ -32,8 +31,7 @@ std::string structureFromName(const std::filesystem::path& path) {
 }
 
 void setTypesFromName(const std::filesystem::path& path, SurfaceMetadata& metadata) {
-  std::string name = path.filename().string();
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string name = lowerCase(path.filename().string());
   struct Row {
     const char *word, *type, *secondary;
   };

@@ -16,6 +16,9 @@ namespace explica {
 /// A number for a table, by a pattern of printf; "n/a" for what is not finite.
 [[nodiscard]] std::string cellText(double value, const char* pattern = "%.6g");
 
+/// The text with its ASCII letters in lower case.
+[[nodiscard]] std::string lowerCase(std::string text);
+
 /// Words with a separator between them; `word` gives each item's.
 template <class Items, class Word = std::identity>
 [[nodiscard]] std::string joined(const Items& items, std::string_view separator = ", ",
