@@ -22,7 +22,7 @@ using report::kWhite;
 using report::Point2;
 using report::TextAnchor;
 
-constexpr double kPanel = 500, kHeight = 590;                                   // of one bull's-eye
+constexpr double kPanel = 480, kHeight = 590;                                   // of one bull's-eye
 constexpr double kRadius = 150, kMiddleX = 220, kMiddleY = 270;                 // pixels
 constexpr double kBarX = 440, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
@@ -88,7 +88,7 @@ void drawSegment(Canvas& canvas, const Point2& corner, const Panel& panel, const
                                                             sector.first + 0.5 * sector.width));
   const Colour ink = inkOn(ground);
   canvas.text(middle + Point2(0, 1), known ? printed("%.*f", panel.digits, value) : "n/a", 11, ink);
-  canvas.text(middle + Point2(0, 14), std::to_string(row.number), 7.5, ink);
+  canvas.text(middle + Point2(0, 14), std::to_string(row.number), 9, ink);
 }
 
 void drawNames(Canvas& canvas, const Point2& corner, bool oriented) {
@@ -121,7 +121,7 @@ void drawBar(Canvas& canvas, const Point2& corner, const Panel& panel) {
   report::ColourScale scale = panel.scale;
   scale.title = panel.unit;
   scale.unit.clear();
-  drawColourBar(canvas, scale, corner + Point2(kBarX, kBarTop), {kBarWidth, kBarHeight}, 8.5);
+  drawColourBar(canvas, scale, corner + Point2(kBarX, kBarTop), {kBarWidth, kBarHeight}, 9);
   if (!(panel.normalLow < high && panel.normalHigh > low)) return;
   const double top = heightOf(std::min(high, panel.normalHigh));
   const double bottom = heightOf(std::max(low, panel.normalLow));
@@ -144,7 +144,7 @@ void drawPanel(Canvas& canvas, const Point2& corner, const Panel& panel, bool or
   drawBar(canvas, corner, panel);
   double y = kMiddleY + kRadius + 50;
   for (const std::string& note : panel.notes) {
-    canvas.text(corner + Point2(24, y), note, 8.5, kGrey, TextAnchor::Left);
+    canvas.text(corner + Point2(14, y), note, 9, kGrey, TextAnchor::Left);
     y += 17;
   }
 }
@@ -256,6 +256,7 @@ Drawn bullseye(const Beat& beat) {
   Canvas canvas(static_cast<int>(kPanel * static_cast<double>(panels.size())),
                 static_cast<int>(kHeight));
   for (std::size_t p = 0; p < panels.size(); ++p) {
+    canvas.layer(panels[p].title);
     drawPanel(canvas, {kPanel * static_cast<double>(p), 0}, panels[p], beat.oriented());
   }
   return {canvas.svg(), canvas.picture(2)};
