@@ -24,7 +24,7 @@ using report::TextAnchor;
 
 constexpr double kPanel = 480, kHeight = 590;                                   // of one bull's-eye
 constexpr double kRadius = 150, kMiddleX = 220, kMiddleY = 270;                 // pixels
-constexpr double kBarX = 440, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
+constexpr double kBarX = 420, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
 constexpr Colour kPale = {0.78F, 0.79F, 0.80F};  // what is not known
 
@@ -173,7 +173,7 @@ std::string leftOutNote(const Frame& frame) {
   std::size_t left = 0, counted = 0;
   for (const Segment& row : frame.segments->rows) left += row.leftOut, counted += row.voxels;
   return std::to_string(left) + " of " + std::to_string(left + counted) +
-         " wall voxels are left out: openings, valve plane, apex";
+         " wall voxels left out: openings, valve plane, apex";
 }
 
 std::string here(const Beat& beat, Quantity quantity) {
