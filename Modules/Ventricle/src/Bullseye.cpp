@@ -144,7 +144,7 @@ void drawPanel(Canvas& canvas, const Point2& corner, const Panel& panel, bool or
   drawBar(canvas, corner, panel);
   double y = kMiddleY + kRadius + 50;
   for (const std::string& note : panel.notes) {
-    canvas.text(corner + Point2(14, y), note, 9, kGrey, TextAnchor::Left);
+    canvas.text(corner + Point2(10, y), note, 9, kGrey, TextAnchor::Left);
     y += 17;
   }
 }
@@ -173,7 +173,7 @@ std::string leftOutNote(const Frame& frame) {
   std::size_t left = 0, counted = 0;
   for (const Segment& row : frame.segments->rows) left += row.leftOut, counted += row.voxels;
   return std::to_string(left) + " of " + std::to_string(left + counted) +
-         " wall voxels left out: openings, valve plane, apex";
+         " wall voxels left out: openings, valve, apex";
 }
 
 std::string here(const Beat& beat, Quantity quantity) {
@@ -186,7 +186,7 @@ std::vector<std::string> thicknessNotes(const Beat& beat) {
   const Reference& healthy = referenceOf(Quantity::MiddleThickness);
   return {leftOutNote(beat.atDiastole()),
           "rings from outside: basal, middle, apical, and the apex",
-          "* healthy adults, middle ring, 2 SD to either side (here " +
+          "* healthy adults, middle ring, within 2 SD (here " +
               here(beat, Quantity::MiddleThickness) + " mm):",
           rangeText(healthy),
           healthy.people,
