@@ -45,8 +45,8 @@ What is written is tested once more: faces that cross in it and did not at the s
       .options("Reading", s.reading)
       .option("Inflation",
               Field{"repair", "",
-                    "part faces that intersect at the start, by small moves where that goes; the "
-                    "result is compared with the surface so repaired"},
+                    "remove self-intersections first; distortion is measured against the repaired "
+                    "surface"},
               s.repair)
       .options("Inflation", s.inflate)
       .option("Inflation", Field{"resume", "", "continue the run whose outputs are in --out"},

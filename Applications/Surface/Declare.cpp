@@ -128,8 +128,8 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .option(
           "Surface",
           Field{"sheet", "",
-                "whether the surfaces may end in rims, with the topology of the tissue, instead of "
-                "being closed: where grey matter runs out of the image (auto), always, never"},
+                "allow open surfaces, which end in rims: where grey matter runs out of the image "
+                "(auto), always, never"},
           s.sheet)
       .option(
           "Output",

@@ -43,9 +43,8 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
       .needs({"distance"}, {"direction"})
       .option("Unfolding",
               Field{"repair", "",
-                    "part faces that intersect at the start, by small moves where that goes: those "
-                    "of the region and its collar, if given explicitly those of all the surface; "
-                    "the result is compared with the surface so repaired"},
+                    "remove self-intersections of region and collar first (of all the surface, if "
+                    "given explicitly); distortion is measured against the repaired surface"},
               s.repair)
       .options("Unfolding", s.unfold)
       .needs({"knot-weight"}, {"knot"})

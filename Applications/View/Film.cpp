@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <string>
 
 namespace explica::app {
@@ -93,11 +94,7 @@ void encodeByFfmpeg(const fs::path& path, const std::vector<report::Picture>& fr
   std::signal(SIGPIPE, before);
   int status = 0;
   waitpid(child, &status, 0);
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  if (code == 127) {
-    throw EnvironmentError("film: ffmpeg is not installed; write a .gif, or install ffmpeg");
-  }
-  if (code != 0) throw EnvironmentError("film: ffmpeg could not write " + path.string());
+  if (status != 0) throw EnvironmentError("film: ffmpeg could not write " + path.string());
 }
 
 }  // namespace
@@ -168,6 +165,17 @@ std::vector<report::Picture> drawFilm(const fs::path& folder,
   return pictures;
 }
 
+void requireFilmFormat(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  if (ending == ".gif") return;
+  if (ending != ".mp4" && ending != ".webm") {
+    throw UsageError("--film " + path.string() + ": expected a name ending in .gif, .mp4 or .webm");
+  }
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {  // NOLINT: no words of the user
+    throw EnvironmentError("film: ffmpeg is not installed; write a .gif, or install ffmpeg");
+  }
+}
+
 void writeFilm(const fs::path& path, const std::vector<report::Picture>& frames,
                double framesPerSecond) {
   const std::string ending = path.extension().string();
@@ -183,9 +191,6 @@ void writeFilm(const fs::path& path, const std::vector<report::Picture>& frames,
       throw;
     }
     return;
-  }
-  if (ending != ".gif") {
-    throw UsageError("--film " + path.string() + ": expected a name ending in .gif, .mp4 or .webm");
   }
   WholeFile file(path);
   file.write(report::encodeGif(frames, framesPerSecond));

@@ -254,6 +254,7 @@ Termination run(Context& context, const ViewSettings& s, const ShowWindow& show)
     throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");
   }
   if (s.film) {
+    requireFilmFormat(*s.film);
     const std::filesystem::path folder = s.files.front();
     report::SurfacePictureOptions picture = s.picture;
     if (!context.given("width")) picture.width = 800;

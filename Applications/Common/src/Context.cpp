@@ -19,7 +19,8 @@ using provenance::Json;
 Json Context::State::reasonsInWords() const {
   Json words = Json::array();
   if (!reachedGoal(record.termination)) {
-    words.push_back("stopped before its goal: " + std::string(nameOf(record.termination)));
+    words.push_back("ended before its goal was reached: " +
+                    std::string(nameOf(record.termination)));
   }
   for (const auto& [judgement, sentence] : reasons) words.push_back(sentence);
   for (const Json& flag : flags.value_or(Json::array())) {

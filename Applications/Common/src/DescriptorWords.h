@@ -17,7 +17,7 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {
     {{0, "done"},
      {1, "usage"},
      {2, "bad input"},
-     {3, "stopped before its goal (outputs written and marked)"},
+     {3, "a goal or check was missed (results written and marked)"},
      {4, "environment"}}};
 
 [[nodiscard]] std::string replaced(std::string text, const std::string& from,

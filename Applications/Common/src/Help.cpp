@@ -128,8 +128,8 @@ std::string helpText(const Declaration& d) {
       wrap(out, reference, 4, 2);
     }
   }
-  out << "\nExit codes: 0 done, 1 usage, 2 bad input, 3 stopped before its goal (outputs written "
-         "and marked),\n4 environment (disk full, out of memory).\n";
+  out << "\nExit codes: 0 done, 1 usage, 2 bad input, 3 a goal or check was missed (results "
+         "written and\nmarked), 4 environment (disk full, out of memory).\n";
   return out.str();
 }
 

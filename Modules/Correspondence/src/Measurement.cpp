@@ -64,12 +64,12 @@ void noteGaps(Measurement& m, const Monitor& monitor) {
   };
   add(dropped, " in pieces that touch only one of the two boundaries",
       firstAt(annulus.firstDropped));
-  add(m.lost, " whose trajectory does not reach both boundaries",
+  add(m.lost, " whose trajectory ends before a boundary",
       first < 0 ? "" : firstAt(annulus.voxel(first)));
   add(leaving, " whose trajectory leaves the image", "");
   if (reasons.empty()) return;
-  monitor.warn(std::to_string(m.lost + leaving + dropped) + " voxels of tissue have no thickness" +
-               reasons);
+  monitor.warn(std::to_string(m.lost + leaving + dropped) +
+               " voxels of tissue could not be measured" + reasons);
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void describe(Results& t, const Measurement& m) {
   t.count("voxels", "Voxels of tissue", "", m.annulus.count()).inHead();
   t.count("components", "Pieces of tissue", "Connected through voxel faces.", m.annulus.components);
   t.count("direct_contacts", "Contacts of inner and outer region",
-          "Voxel faces where both touch, without tissue between them.", m.annulus.directContacts);
+          "Voxel faces with no tissue between the two.", m.annulus.directContacts);
   t.count("tissue_ends", "Ends of the tissue",
           "Places wider than it is thick where both touch: a hemisphere's cortex ends once, around "
           "the medial wall.",

@@ -209,7 +209,7 @@ TEST(Measurement, SaysOnceWhyTissueHasNoThicknessAndWhere) {
   EXPECT_EQ(m.annulus.droppedVoxels, 2U);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0],
-            "2 voxels of tissue have no thickness: 2 in pieces that touch only one of the two "
+            "2 voxels of tissue could not be measured: 2 in pieces that touch only one of the two "
             "boundaries (the first at voxel (32, 32, 32))");
 }
 

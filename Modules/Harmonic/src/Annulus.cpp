@@ -301,8 +301,7 @@ std::vector<std::pair<std::size_t, std::size_t>> placesOf(const Annulus& annulus
   return places;
 }
 
-constexpr const char* kTouches =
-    "the inner region touches the outer one without tissue between them at ";
+constexpr const char* kTouches = "no tissue between the inner and the outer region at ";
 
 /// Says in which slices a ring is open.
 void warnOfOpenRings(const Annulus& annulus, const Contacts& contacts, const Monitor& monitor) {

@@ -13,8 +13,7 @@ void describe(Results& t, const InflateSummary& s) {
   t.count("viewpoints", "Points of the enclosing sphere", "From which visibility is judged.",
           s.viewpoints);
   t.change("visibility", "Global visibility", "",
-           "Share of the view from all around that reaches the surface; 1 for convex ones only.",
-           s.visibility)
+           "Visibility from all directions; 1 for convex surfaces only.", s.visibility)
       .atLeast(s.target, Judgement::Look, "the visibility asked for")
       .inHead();
   t.change("seen", "Seen from somewhere", "share",

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 
 namespace explica::report {
 namespace {
@@ -39,6 +38,18 @@ TriangleMesh placesOf(const std::vector<FilmFrame>& frames,
   return all;
 }
 
+/// Of each vertex whether it is ever elsewhere than in the first frame.
+std::vector<std::uint8_t> movesOf(const std::vector<FilmFrame>& frames) {
+  const Positions& first = frames.front().mesh.positions;
+  std::vector<std::uint8_t> moves(static_cast<std::size_t>(first.rows()), 0);
+  for (const FilmFrame& frame : frames) {
+    for (Eigen::Index v = 0; v < first.rows(); ++v) {
+      if (frame.mesh.positions.row(v) != first.row(v)) moves[v] = 1;
+    }
+  }
+  return moves;
+}
+
 /// How far the film has come, along the picture's lower rim.
 void drawProgress(Picture& picture, std::size_t frame, std::size_t count, double letters) {
   const double y = picture.height - letters / 5;
@@ -63,11 +74,11 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
   const Camera camera =
       cameraTowards(placesOf(frames, look.focus), look.towards, look.up, drawn.width, drawn.height);
   std::vector<Picture> pictures;
-  std::optional<SurfaceScene> scene;
+  SurfaceScene scene(frames.front().mesh, movesOf(frames));
   for (const FilmFrame& frame : frames) {
     Picture whole(options.width, options.height);
-    scene = SurfaceScene(frame.mesh, scene ? &*scene : nullptr);
-    pastePicture(whole, scene->render(camera, look.colours, look.filling, drawn, look.keys), 0, 0);
+    if (&frame != &frames.front()) scene.moveTo(frame.mesh);
+    pastePicture(whole, scene.render(camera, look.colours, look.filling, drawn, look.keys), 0, 0);
     drawProgress(whole, pictures.size(), frames.size(), letters);
     drawText(whole, frame.caption, Eigen::Vector2d(0.5 * options.width, options.height - letters),
              letters, {0.02F, 0.02F, 0.02F}, TextAnchor::Middle);

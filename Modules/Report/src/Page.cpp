@@ -183,9 +183,17 @@ std::string glanceHtml(const ReportGlance& glance);
 
 std::string drawingHtml(const ReportDrawing& drawing) {
   const std::string title = escapeHtml(drawing.title);
-  return "<div class='wide' tabindex='0' role='region' aria-label='" + title + "'><img alt='" +
-         title + "' class='drawing' src='data:" + drawing.mediaType + ";base64," +
-         base64(drawing.bytes) + "'></div>";
+  const bool isSplit = drawing.panels > 1;
+  std::string html = "<div class='wide" + std::string(isSplit ? " panels" : "") +
+                     "' tabindex='0' role='region' aria-label='" + title + "'>";
+  for (int p = 0; p < drawing.panels; ++p) {
+    html += "<img alt='" + title + "' class='drawing' " +
+            (isSplit ? "style='object-position: " + std::to_string(100 * p / (drawing.panels - 1)) +
+                           "%' "
+                     : "") +
+            "src='data:" + drawing.mediaType + ";base64," + base64(drawing.bytes) + "'>";
+  }
+  return html + "</div>";
 }
 
 /// The pictures in the head of the page; empty if there are none.
@@ -194,8 +202,9 @@ std::string picturesAtGlance(const ReportContent& content) {
   for (const ReportGlance& glance : content.glance) html += glanceHtml(glance);
   for (const ReportDrawing& drawing : content.drawings) {
     if (drawing.guide.empty()) continue;
-    html += "<div class='seen drawn'><h3>" + escapeHtml(drawing.title) + "</h3>" +
-            drawingHtml(drawing) + "<p class='quiet'>" + escapeHtml(drawing.guide) + "</p></div>";
+    html += std::string("<div class='seen") + (drawing.panels > 1 ? " broad" : "") + "'><h3>" +
+            escapeHtml(drawing.title) + "</h3>" + drawingHtml(drawing) + "<p class='quiet'>" +
+            escapeHtml(drawing.guide) + "</p></div>";
   }
   return html;
 }

@@ -24,6 +24,7 @@ namespace {
 constexpr int kSkyRays = 12;           // a vertex; neighbours are averaged afterwards
 constexpr int kSkySmoothing = 2;       // passes
 constexpr double kSkyReach = 0.10;     // of the surface's diagonal
+constexpr float kNotMeasured = -1;     // of a length of a ray
 constexpr double kMargin = 1.04;       // of the picture around the surface
 constexpr int kTile = 32;              // pixels; one task
 constexpr double kBorder = 1.6;        // pixels: width of the line between two regions
@@ -86,23 +87,63 @@ Eigen::Vector3f perpendicular(const Eigen::Vector3f& n) {
       .normalized();
 }
 
+using FloatPositions = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Faces that rays meet: those of a surface that stay, or those that move.
+struct Layer {
+  std::vector<std::int32_t> faces;  ///< which of the surface's
+  Scene scene;
+
+  /// @param id  what rays that meet them get as `geomID`
+  void build(RTCDevice device, unsigned id, const FloatPositions& positions, const Faces& all);
+};
+
+void Layer::build(RTCDevice device, unsigned id, const FloatPositions& positions,
+                  const Faces& all) {
+  scene.reset(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  if (!faces.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), static_cast<std::size_t>(positions.rows())));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), faces.size()));
+    if (vertices == nullptr || indices == nullptr) {
+      rtcReleaseGeometry(geometry);
+      throw EnvironmentError("not enough memory to draw a surface of " +
+                             std::to_string(all.rows()) + " faces");
+    }
+    std::copy(positions.data(), positions.data() + positions.size(), vertices);
+    for (const std::int32_t f : faces) {
+      for (int k = 0; k < 3; ++k) *indices++ = static_cast<unsigned>(all(f, k));
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene.get(), geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(scene.get());
+}
+
 }  // namespace
 
 struct SurfaceScene::Implementation {
-  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> positions;
-  Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> normals;
+  FloatPositions positions;
+  FloatPositions normals;
   Faces faces;
-  std::vector<float> sky;       ///< share that each vertex sees, by its own rays
-  std::vector<float> openness;  ///< the same averaged over neighbours
+  std::vector<std::uint8_t> moves;  ///< of each vertex; none: all stay
+  std::vector<std::uint8_t> turns;  ///< of each vertex whether it is of a face that moves
+  std::vector<float> clear;         ///< mm along each vertex's rays to the first face that stays
+  std::vector<float> openness;      ///< share of the sky that each vertex and those about it see
   double diagonal = 1;
   float skyReach = 0;  ///< of the rays into the sky, mm
   Device device;
-  Scene scene;
+  Layer still, moving;
 
-  void build(const TriangleMesh& mesh, const Implementation* before);
-  /// Of each vertex whether what has moved may lie within `skyReach`, now or before.
-  [[nodiscard]] std::vector<std::uint8_t> nearMoved(const Implementation& before) const;
-  void measureOpenness(const Implementation* before);
+  void build(const TriangleMesh& mesh);
+  void moveTo(const TriangleMesh& mesh);
+  void place(const TriangleMesh& mesh);
+  void measureOpenness();
   struct Tint;
   /// Of each face a bit for each edge, opposite to its first, second and third corner: whether it
   /// is the only face at that edge without a corner of key 0, or beside that face.
@@ -128,40 +169,47 @@ struct SurfaceScene::Implementation::Tint {
                             const std::array<float, 3>& weight) const;
 };
 
-void SurfaceScene::Implementation::build(const TriangleMesh& mesh, const Implementation* before) {
+void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
   if (mesh.faceCount() == 0) throw InvalidInput("surface: no faces to draw");
-  if (!mesh.positions.allFinite()) throw InvalidInput("surface: a vertex's position is not finite");
-  positions = mesh.positions.cast<float>();
-  normals = geometry::vertexNormals(mesh).cast<float>();
   faces = mesh.faces;
-  if (before && before->faces != faces) before = nullptr;
   diagonal = (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
-  skyReach = before ? before->skyReach : static_cast<float>(kSkyReach * diagonal);
-
+  skyReach = static_cast<float>(kSkyReach * diagonal);
   device.reset(rtcNewDevice(nullptr));
   if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!device) throw EnvironmentError("Embree cannot start on this processor; pictures need it");
-  scene.reset(rtcNewScene(device.get()));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                              3 * sizeof(float), static_cast<std::size_t>(positions.rows())));
-  auto* indices = static_cast<unsigned*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                              3 * sizeof(unsigned), static_cast<std::size_t>(faces.rows())));
-  if (vertices == nullptr || indices == nullptr) {
-    rtcReleaseGeometry(geometry);
-    throw EnvironmentError("not enough memory to draw a surface of " +
-                           std::to_string(faces.rows()) + " faces");
+
+  moves.resize(static_cast<std::size_t>(mesh.vertexCount()), 0);
+  turns = moves;
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    const bool isMoving =
+        moves[faces(f, 0)] != 0 || moves[faces(f, 1)] != 0 || moves[faces(f, 2)] != 0;
+    (isMoving ? moving : still).faces.push_back(static_cast<std::int32_t>(f));
+    for (int k = 0; k < 3 && isMoving; ++k) turns[faces(f, k)] = 1;
   }
-  std::copy(positions.data(), positions.data() + positions.size(), vertices);
-  std::copy(faces.data(), faces.data() + faces.size(), indices);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene.get());
-  measureOpenness(before);
+  place(mesh);
+  still.build(device.get(), 0, positions, faces);
+  moving.build(device.get(), 1, positions, faces);
+  clear.assign(moves.size() * kSkyRays, kNotMeasured);
+  measureOpenness();
+}
+
+void SurfaceScene::Implementation::place(const TriangleMesh& mesh) {
+  if (!mesh.positions.allFinite()) throw InvalidInput("surface: a vertex's position is not finite");
+  positions = mesh.positions.cast<float>();
+  normals = geometry::vertexNormals(mesh).cast<float>();
+}
+
+void SurfaceScene::Implementation::moveTo(const TriangleMesh& mesh) {
+  if (mesh.faces != faces) throw InvalidInput("surface: its faces are not those of before");
+  const FloatPositions before = positions;
+  place(mesh);
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (moves[v] == 0 && positions.row(v) != before.row(v)) {
+      throw InvalidInput("surface: vertex " + std::to_string(v) + " was to stay where it is");
+    }
+  }
+  moving.build(device.get(), 1, positions, faces);
+  measureOpenness();
 }
 
 std::vector<std::uint8_t> SurfaceScene::Implementation::rimOf(
@@ -225,76 +273,47 @@ Colour SurfaceScene::Implementation::Tint::at(const Implementation& surface, Eig
   return base;
 }
 
-std::vector<std::uint8_t> SurfaceScene::Implementation::nearMoved(
-    const Implementation& before) const {
-  constexpr int kFar = 6;  // cells of a grid along the reach
-  const Eigen::RowVector3f low =
-      positions.colwise().minCoeff().cwiseMin(before.positions.colwise().minCoeff());
-  const Eigen::RowVector3f high =
-      positions.colwise().maxCoeff().cwiseMax(before.positions.colwise().maxCoeff());
-  const auto cellOf = [&](const Eigen::RowVector3f& p) -> Eigen::Array3i {
-    return ((p - low) * (kFar / skyReach)).array().cast<int>().transpose() + kFar + 1;
-  };
-  const Eigen::Array3i size = cellOf(high) + kFar + 2;
-  const auto index = [&](const Eigen::Array3i& c) {
-    return (static_cast<std::size_t>(c.z()) * size.y() + c.y()) * size.x() + c.x();
-  };
-  std::vector<std::uint8_t> holds(index(size), 0), isNear(index(size), 0);
-  const auto mark = [&](const Eigen::Array3i& cell) {
-    if (std::exchange(holds[index(cell)], 1) != 0) return;
-    constexpr int kSide = 2 * kFar + 3;
-    for (int n = 0; n < kSide * kSide * kSide; ++n) {
-      const Eigen::Array3i d =
-          Eigen::Array3i(n % kSide, n / kSide % kSide, n / kSide / kSide) - kFar - 1;
-      if ((d.abs() - 1).max(0).square().sum() <= kFar * kFar) isNear[index(cell + d)] = 1;
-    }
-  };
-  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-    if (positions.row(v) == before.positions.row(v)) continue;
-    mark(cellOf(positions.row(v)));
-    mark(cellOf(before.positions.row(v)));
-  }
-  std::vector<std::uint8_t> ofVertex(static_cast<std::size_t>(positions.rows()));
-  for (std::size_t v = 0; v < ofVertex.size(); ++v) {
-    ofVertex[v] = isNear[index(cellOf(positions.row(static_cast<Eigen::Index>(v))))];
-  }
-  return ofVertex;
-}
-
-void SurfaceScene::Implementation::measureOpenness(const Implementation* before) {
-  const auto count = static_cast<std::size_t>(positions.rows());
-  sky = before ? before->sky : std::vector<float>(count, 1.0f);
+void SurfaceScene::Implementation::measureOpenness() {
+  const std::size_t count = moves.size();
   const auto lift = static_cast<float>(1e-4 * diagonal);
-  const std::vector<std::uint8_t> isNew =
-      before ? nearMoved(*before) : std::vector<std::uint8_t>(count, 1);
   const auto directions = skyDirections();
+  Eigen::AlignedBox3f moved;
+  for (std::size_t v = 0; v < count; ++v) {
+    if (turns[v] != 0) moved.extend(positions.row(v).transpose());
+  }
+  std::vector<float> sky(count, 1.0f);  // share that each vertex sees
   parallelForBlocks(count, 2048, [&](std::size_t begin, std::size_t end) {
     const FlushDenormals flush;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
     for (std::size_t v = begin; v < end; ++v) {
       const Eigen::Vector3f n = normals.row(v).transpose();
-      if (isNew[v] == 0 || n.squaredNorm() < 0.5f) continue;
+      if (n.squaredNorm() < 0.5f) continue;
       // A different turn at each vertex; averaging over neighbours then sees many directions.
       const auto turn = static_cast<float>(2 * kPi / 65536 * ((v * 2654435761u) & 0xffffu));
       const Eigen::Vector3f x = perpendicular(n), y = n.cross(x);
       const Eigen::Vector3f a = std::cos(turn) * x + std::sin(turn) * y, b = n.cross(a);
       const Eigen::Vector3f origin = positions.row(v).transpose() + lift * n;
+      const bool isNear = !moved.isEmpty() && moved.exteriorDistance(origin) <= skyReach;
       float open = 0;
-      for (const Eigen::Vector3f& d : directions) {
-        const Eigen::Vector3f direction = d.x() * a + d.y() * b + d.z() * n;
-        RTCRayHit query = rayFrom(origin, direction, 0, skyReach);
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene.get(), &context, &query);
+      for (int r = 0; r < kSkyRays; ++r) {
+        const Eigen::Vector3f& d = directions[r];
+        float& known = clear[v * kSkyRays + r];
+        RTCRayHit query = rayFrom(origin, d.x() * a + d.y() * b + d.z() * n, 0, skyReach);
+        if (turns[v] != 0 || known < 0) {
+          rtcIntersect1(still.scene.get(), &context, &query);
+          known = query.ray.tfar;
+        }
+        query.ray.tfar = known;
+        if (isNear) rtcIntersect1(moving.scene.get(), &context, &query);
         // A wall far away hides less of the sky's light than one close by.
-        open += query.hit.geomID == RTC_INVALID_GEOMETRY_ID
-                    ? 1.0f
-                    : std::min(1.0f, query.ray.tfar / skyReach);
+        open += query.ray.tfar / skyReach;
       }
       sky[v] = open / kSkyRays;
     }
   });
   // Averages over neighbours, over face corners so that non-manifold meshes can be drawn, too.
-  openness = sky;
+  openness = std::move(sky);
   for (int pass = 0; pass < kSkySmoothing; ++pass) {
     std::vector<float> sum(openness);
     std::vector<float> weight(count, 1.0f);
@@ -309,9 +328,13 @@ void SurfaceScene::Implementation::measureOpenness(const Implementation* before)
   }
 }
 
-SurfaceScene::SurfaceScene(const TriangleMesh& mesh, const SurfaceScene* before)
+SurfaceScene::SurfaceScene(const TriangleMesh& mesh, const std::vector<std::uint8_t>& moves)
     : implementation_(std::make_unique<Implementation>()) {
-  implementation_->build(mesh, before ? before->implementation_.get() : nullptr);
+  implementation_->moves = moves;
+  implementation_->build(mesh);
+}
+void SurfaceScene::moveTo(const TriangleMesh& mesh) {
+  implementation_->moveTo(mesh);
 }
 SurfaceScene::~SurfaceScene() = default;
 SurfaceScene::SurfaceScene(SurfaceScene&&) noexcept = default;
@@ -374,8 +397,10 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
         const Eigen::Vector3f from = corner + px * step * right - py * step * up;
         std::copy(from.data(), from.data() + 3, &queries[q].ray.org_x);
       }
-      rtcIntersect1M(self.scene.get(), &context, queries.data(),
-                     static_cast<unsigned>(queries.size()), sizeof(RTCRayHit));
+      for (const Layer* layer : {&self.still, &self.moving}) {
+        rtcIntersect1M(layer->scene.get(), &context, queries.data(),
+                       static_cast<unsigned>(queries.size()), sizeof(RTCRayHit));
+      }
       for (int x = x0; x < x1; ++x) {
         Colour sum = {0, 0, 0};
         for (int s = 0; s < ofPixel; ++s) {
@@ -384,7 +409,8 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
             for (float& c : sum) c += 1;
             continue;
           }
-          const auto face = static_cast<Eigen::Index>(query.hit.primID);
+          const Layer& layer = query.hit.geomID == 0 ? self.still : self.moving;
+          const Eigen::Index face = layer.faces[query.hit.primID];
           const std::array<float, 3> weight = {1 - query.hit.u - query.hit.v, query.hit.u,
                                                query.hit.v};
           Eigen::Vector3f normal = Eigen::Vector3f::Zero();

@@ -217,7 +217,7 @@ void describeImage(Results& t, const SurfaceSummary& s, const CorticalSurfaces& 
 
 void describeSheet(Results& t, const SurfaceSummary& s, const SheetFacts& sheet) {
   const bool open = sheet.open || s.made == nullptr;
-  t.flag("sheet", "Sheet", "The surfaces may end in rims.", sheet.open);
+  t.flag("sheet", "Sheet", "Open surfaces, which end in rims.", sheet.open);
   t.count("rims", "Rims", "Of each surface.", where(open, sheet.rims));
   t.count("pockets_filled", "Pockets filled", "Pieces of other labels within the tissue.",
           where(open, sheet.pocketsFilled));

@@ -22,9 +22,9 @@ using report::kWhite;
 using report::Point2;
 using report::TextAnchor;
 
-constexpr double kPanel = 500, kHeight = 590;                                   // of one bull's-eye
+constexpr double kPanel = 480, kHeight = 590;                                   // of one bull's-eye
 constexpr double kRadius = 150, kMiddleX = 220, kMiddleY = 270;                 // pixels
-constexpr double kBarX = 440, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
+constexpr double kBarX = 420, kBarTop = 130, kBarHeight = 280, kBarWidth = 16;  // pixels
 
 constexpr Colour kPale = {0.78F, 0.79F, 0.80F};  // what is not known
 
@@ -88,7 +88,7 @@ void drawSegment(Canvas& canvas, const Point2& corner, const Panel& panel, const
                                                             sector.first + 0.5 * sector.width));
   const Colour ink = inkOn(ground);
   canvas.text(middle + Point2(0, 1), known ? printed("%.*f", panel.digits, value) : "n/a", 11, ink);
-  canvas.text(middle + Point2(0, 14), std::to_string(row.number), 7.5, ink);
+  canvas.text(middle + Point2(0, 14), std::to_string(row.number), 9, ink);
 }
 
 void drawNames(Canvas& canvas, const Point2& corner, bool oriented) {
@@ -121,7 +121,7 @@ void drawBar(Canvas& canvas, const Point2& corner, const Panel& panel) {
   report::ColourScale scale = panel.scale;
   scale.title = panel.unit;
   scale.unit.clear();
-  drawColourBar(canvas, scale, corner + Point2(kBarX, kBarTop), {kBarWidth, kBarHeight}, 8.5);
+  drawColourBar(canvas, scale, corner + Point2(kBarX, kBarTop), {kBarWidth, kBarHeight}, 9);
   if (!(panel.normalLow < high && panel.normalHigh > low)) return;
   const double top = heightOf(std::min(high, panel.normalHigh));
   const double bottom = heightOf(std::max(low, panel.normalLow));
@@ -144,7 +144,7 @@ void drawPanel(Canvas& canvas, const Point2& corner, const Panel& panel, bool or
   drawBar(canvas, corner, panel);
   double y = kMiddleY + kRadius + 50;
   for (const std::string& note : panel.notes) {
-    canvas.text(corner + Point2(24, y), note, 8.5, kGrey, TextAnchor::Left);
+    canvas.text(corner + Point2(10, y), note, 9, kGrey, TextAnchor::Left);
     y += 17;
   }
 }
@@ -173,7 +173,7 @@ std::string leftOutNote(const Frame& frame) {
   std::size_t left = 0, counted = 0;
   for (const Segment& row : frame.segments->rows) left += row.leftOut, counted += row.voxels;
   return std::to_string(left) + " of " + std::to_string(left + counted) +
-         " wall voxels are left out: openings, valve plane, apex";
+         " wall voxels left out: openings, valve, apex";
 }
 
 std::string here(const Beat& beat, Quantity quantity) {
@@ -186,7 +186,7 @@ std::vector<std::string> thicknessNotes(const Beat& beat) {
   const Reference& healthy = referenceOf(Quantity::MiddleThickness);
   return {leftOutNote(beat.atDiastole()),
           "rings from outside: basal, middle, apical, and the apex",
-          "* healthy adults, middle ring, 2 SD to either side (here " +
+          "* healthy adults, middle ring, within 2 SD (here " +
               here(beat, Quantity::MiddleThickness) + " mm):",
           rangeText(healthy),
           healthy.people,
@@ -256,6 +256,7 @@ Drawn bullseye(const Beat& beat) {
   Canvas canvas(static_cast<int>(kPanel * static_cast<double>(panels.size())),
                 static_cast<int>(kHeight));
   for (std::size_t p = 0; p < panels.size(); ++p) {
+    canvas.layer(panels[p].title);
     drawPanel(canvas, {kPanel * static_cast<double>(p), 0}, panels[p], beat.oriented());
   }
   return {canvas.svg(), canvas.picture(2)};

@@ -107,7 +107,8 @@ TEST(Reference, TheBullseyesOfAHeartKeepApart) {
     const int middle = seen.width * panel / 3;
     for (int x = std::max(0, middle - kMargin); x < std::min(seen.width, middle + kMargin); ++x) {
       for (int y = 0; y < seen.height; ++y) {
-        ASSERT_EQ(static_cast<int>(*seen.pixel(x, y)), 255) << "panel " << panel << " at " << x;
+        ASSERT_EQ(static_cast<int>(*seen.pixel(x, y)), 255)
+            << "panel " << panel << " at " << x << ", " << y;
       }
     }
   }

@@ -62,7 +62,7 @@ def command(
     step's option: `unfold__radius=20` is `--unfold.radius 20`.  Messages go to standard error
     (`quiet=True` silences them).  Ctrl-C stops the command at its next consistent state.
 
-    Returns a dict: exit_code (0, or 3 if it stopped before its goal), and, with `out`, out,
+    Returns a dict: exit_code (0, or 3 if a goal or check was missed), and, with `out`, out,
     summary and provenance, the contents of summary.json and provenance.json.
     Raises UsageError, InvalidInput (unusable data or files) or MachineError, with the command's
     own sentence.

@@ -27,11 +27,13 @@ std::string mediaTypeOf(const fs::path& file) {
 /// A picture by the name that commands give it; with a guide, it stands in the head of the page.
 struct Known {
   const char *stem, *title, *guide;
+  bool hasPanels = false;  ///< each a layer, side by side
 };
 constexpr Known kKnown[] = {
     {"bullseye", "The wall's segments",
      "Right: thickness changes little by little from segment to segment. Wrong: one segment far "
-     "from its neighbours; look at its slices."},
+     "from its neighbours; look at its slices.",
+     true},
     {"slices_ed", "Slices at end-diastole", ""},
     {"slices_es", "Slices at end-systole", ""},
     {"slices", "Slices over time",
@@ -40,17 +42,28 @@ constexpr Known kKnown[] = {
      "run again."},
     {"field", "Interpolant, tangent field, trajectories and grid in a slice", ""}};
 
+int layersOf(const std::string& svg) {
+  const std::string layer = "inkscape:groupmode=\"layer\"";
+  int count = 0;
+  for (std::size_t at = svg.find(layer); at != std::string::npos; at = svg.find(layer, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
 report::ReportDrawing drawingOf(const StepFolder& step, const fs::path& file) {
   const std::string stem = file.stem().string();
   const auto known =
       std::ranges::find_if(kKnown, [&](const Known& one) { return stem == one.stem; });
   const bool isKnown = known != std::end(kKnown);
-  return {"",
-          isKnown ? known->title : inWords(stem),
-          "File: " + step.name + "/" + file.filename().string(),
-          mediaTypeOf(file),
-          fileText(file),
-          isKnown ? known->guide : ""};
+  report::ReportDrawing drawing{"",
+                                isKnown ? known->title : inWords(stem),
+                                "File: " + step.name + "/" + file.filename().string(),
+                                mediaTypeOf(file),
+                                fileText(file),
+                                isKnown ? known->guide : ""};
+  if (isKnown && known->hasPanels) drawing.panels = std::max(1, layersOf(drawing.bytes));
+  return drawing;
 }
 
 }  // namespace

@@ -29,11 +29,6 @@ async function unpackIntegers(packed) {
       details.open = details.querySelector('#cuts') !== null;
     }
   }
-  // A broad drawing beside the verdict, as three bull's-eyes in a row, takes the whole width.
-  for (const image of document.querySelectorAll('.drawn img')) {
-    const judge = () => image.closest('.drawn').classList.toggle('broad', image.naturalWidth > 1.5 * image.naturalHeight);
-    if (image.complete) judge(); else image.addEventListener('load', judge);
-  }
   // A link into what is folded unfolds it.
   const unfold = () => {
     const place = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));

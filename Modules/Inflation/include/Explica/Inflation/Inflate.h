@@ -29,8 +29,8 @@ struct InflateOptions {
 template <class Visitor>
 void describe(InflateOptions& options, Visitor&& visit) {
   visit(Field{"target-seen", "",
-              "share of the view from all around that is to arrive: stop once the global "
-              "visibility reaches it; so much of the area, and more, is then seen from somewhere",
+              "stop at this global visibility: at least as much of the area is then seen from "
+              "somewhere",
               kAboveZero, 1},
         options.targetSeen);
   visit(Field{"frames", "", "states to write on the way, evenly spaced in visibility", 0,

@@ -79,6 +79,7 @@ struct ReportDrawing {
   std::string mediaType;  ///< "image/svg+xml", "image/png"
   std::string bytes;
   std::string guide = {};  ///< given: shown in the head of the page, with what right and wrong are
+  int panels = 1;          ///< beside each other; on a narrow page they stand below each other
 };
 
 /// Views of surfaces beside each other, all to one scale, with one bar or legend in text.

@@ -67,13 +67,16 @@ enum class Filling {
 /// any number of threads.
 class SurfaceScene {
  public:
-  /// @param before  the same faces where they were, or nullptr: how open a vertex lies is measured
-  ///                anew only near what has moved since
+  /// @param moves  of each vertex whether `moveTo` may move it, or none
   /// @throws InvalidInput  no face, or a position that is not finite
-  explicit SurfaceScene(const TriangleMesh& mesh, const SurfaceScene* before = nullptr);
+  explicit SurfaceScene(const TriangleMesh& mesh, const std::vector<std::uint8_t>& moves = {});
   ~SurfaceScene();
   SurfaceScene(SurfaceScene&&) noexcept;
   SurfaceScene& operator=(SurfaceScene&&) noexcept;
+
+  /// The same faces in other places.  Rays are followed anew only through the faces that move.
+  /// @throws InvalidInput  other faces, or a vertex that was to stay has moved
+  void moveTo(const TriangleMesh& mesh);
 
   /// Draws the surface on white, lit from the eye's upper left, dark where folds hide from the sky.
   /// The inner side of faces is shown darker and bluish.
