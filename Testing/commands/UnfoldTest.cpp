@@ -14,6 +14,7 @@
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/DepthBuffer.h"
 #include "Explica/Testing/Meshes.h"
+#include "Explica/Testing/Stops.h"
 #include "Explica/Unfolding/Region.h"
 
 #include <gtest/gtest.h>
@@ -122,6 +123,21 @@ TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
               readText(folder / ("part/" + std::string(name))))
         << name;
   }
+}
+
+/// The surface as it stood is no result.
+TEST(UnfoldCommand, AStopBeforeTheFirstIterationLeavesNothing) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  const std::vector<std::string> words = {"unfold",    folder / "sphere.surf.gii",
+                                          "--center",  "0,0,30",
+                                          "--radius",  "25",
+                                          "--threads", "1",
+                                          "--out",     folder / "a"};
+  const long first = firstCheckThatLeaves("summary.json", words, folder / "a");
+  const auto stopped = explica(words, stopAtCheck(first));
+  EXPECT_TRUE(isInterrupted(stopped)) << stopped;
+  EXPECT_EQ(readJson(folder / "a/summary.json")["iterations"], 1);
 }
 
 TEST(UnfoldCommand, WritesEveryFileArrayAndKeyThatOthersRelyOn) {
