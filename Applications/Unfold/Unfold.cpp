@@ -221,13 +221,14 @@ Termination run(Context& context, const UnfoldSettings& s) {
     u.reference = kReferenceFile;
     u.before.positions = unfolding::roundedToSingle(u.before.positions);
   }
+  u.seenBefore = visibility::visibleFraction(u.before, u.view);
   u.secondsStart = seconds();
   sayHowLong(context, s, u);
   const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
     // What comes after the iterations, in times of the start: it tests, measures and writes, too.
-    constexpr double kRest = 2, kEachFrame = 0.2;
+    constexpr double kRest = 1.5, kEachFrame = 0.2;
     const TimeKept rest(u.secondsStart * (kRest + kEachFrame * s.unfold.frames));
     checkpoint(context.monitor());  // no time for a first iteration
     u.result = unfolding::unfold(u.before, u.chosen, u.view, s.unfold, context.monitor(),
