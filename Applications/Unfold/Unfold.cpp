@@ -224,13 +224,11 @@ Termination run(Context& context, const UnfoldSettings& s) {
   u.seenBefore = visibility::visibleFraction(u.before, u.view);
   u.secondsStart = seconds();
   sayHowLong(context, s, u);
-  const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
     // What comes after the iterations, in times of the start: it tests, measures and writes, too.
     constexpr double kRest = 1.5, kEachFrame = 0.2;
     const TimeKept rest(u.secondsStart * (kRest + kEachFrame * s.unfold.frames));
-    checkpoint(context.monitor());  // no time for a first iteration
     u.result = unfolding::unfold(u.before, u.chosen, u.view, s.unfold, context.monitor(),
                                  from ? &*from : nullptr);
     const bool asItStood = u.result.history.back().iteration == 0;
@@ -239,6 +237,7 @@ Termination run(Context& context, const UnfoldSettings& s) {
     step.iterations(u.result.history.back().iteration);
     step.termination(u.result.termination);
   }
+  const StopScope kept(nullptr);  // what is reached is written
   const double unfolded = seconds();
   auto step = context.step("measure and write");
   const Termination end = writeUnfolded(context, u);
