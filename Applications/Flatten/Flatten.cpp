@@ -201,10 +201,8 @@ struct Made {
   flattening::Checkpoint state;
   double secondsCut = 0;
 
-  /// Whether it was stopped while cuts were sought: then there is no map.
-  [[nodiscard]] bool searching() const {
-    return state.cuts && state.cuts->termination == Termination::Interrupted;
-  }
+  /// Whether it was not stopped before there was a map.
+  [[nodiscard]] bool hasMap() const { return disc.mesh.faceCount() > 0; }
 };
 
 Made make(Context& context, const FlattenSettings& s, const Subject& subject, flattening::Disc disc,
@@ -219,17 +217,22 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
     Opened opened = openedByItself(context, context.monitor(), subject.reference, disc, s.cut,
                                    from ? &*from : nullptr);
     made.state.cuts = std::move(opened.plan);
-    if (made.searching()) return made;
+    if (made.state.cuts->termination == Termination::Interrupted) return made;
     disc = std::move(opened.disc);
   }
   if (subject.cuts) {
     auto step = context.step("cut");
     disc = openedAlongTemplate(context, subject.reference, disc, *subject.cuts);
   }
-  const StopScope kept(nullptr);  // the map is whole at any moment
   made.secondsCut = secondsSince(begin);
   auto step = context.step("flatten");
-  made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
+  try {
+    made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
+  } catch (const Interrupted&) {
+    if (!made.state.cuts) throw;
+    step.termination(causeOf(Termination::Interrupted));
+    return made;
+  }
   made.map.termination = causeOf(made.map.termination);
   step.iterations(made.map.iterations);
   step.termination(made.map.termination);
@@ -253,7 +256,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   const Made made = make(context, s, subject, std::move(whole), options);
   const StopScope kept(nullptr);  // what is reached is written
   flattening::writeCheckpoint(context.output(kFlatteningState), made.state);
-  if (made.searching()) return Termination::Interrupted;
+  if (!made.hasMap()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
   const double flattened = secondsSince(begin);

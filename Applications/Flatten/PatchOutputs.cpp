@@ -153,8 +153,6 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
   io::writeGiftiShape(context.output("vertex_of.shape.gii"), {{"vertex", "", numbers}},
                       metadata.structure);
   const std::string side = metadata.structure == "CortexRight" ? "rh" : "lh";
-  const auto inPatch = freeSurferVertices(disc, flat.vertexCount());
-  io::writePatch(context.output(side + ".patch.flat"), io::patchOf(flat, inPatch));
   TriangleMesh whole = subject.reference.mesh;
   if (subject.reference.origin.format == "FreeSurfer") {  // patches hold surface RAS as stored
     const Eigen::Matrix4d back = subject.reference.origin.applied.inverse();
@@ -162,7 +160,10 @@ void writeSurfaces(Context& context, const Subject& subject, const flattening::D
                        back.topRightCorner<3, 1>().transpose())
                           .eval();
   }
-  io::writePatch(context.output(side + ".patch.3d"), io::patchOf(whole, inPatch));
+  io::Patch patch = io::patchOf(whole, freeSurferVertices(disc, flat.vertexCount()));
+  io::writePatch(context.output(side + ".patch.3d"), patch);
+  patch.positions = flat.positions(patch.vertices, Eigen::all);
+  io::writePatch(context.output(side + ".patch.flat"), patch);
 }
 
 Eigen::VectorXd measure(Context& context, const Subject& subject, const flattening::Disc& disc,

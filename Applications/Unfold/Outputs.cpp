@@ -15,7 +15,6 @@
 #include "Explica/Unfolding/Summary.h"
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/FluxVariance.h"
-#include "Explica/Visibility/VisibleFraction.h"
 
 #include <algorithm>
 
@@ -26,7 +25,7 @@ namespace {
 struct Measures {
   TriangleMesh reference;  ///< before, with the faces that are written
   unfolding::Distortion distortion;
-  visibility::VisibleFraction seenBefore, seenAfter;
+  visibility::VisibleFraction seenAfter;
   Eigen::VectorXd areaRatio;        ///< of every face that is written; 1 where nothing moves
   Eigen::VectorXd angleChange;      ///< degrees; 0 outside the region
   std::vector<std::int32_t> moved;  ///< faces: the region's and the collar's, ascending
@@ -38,7 +37,6 @@ Measures measure(const Unfolded& u) {
   Measures m;
   m.reference = {u.before.positions, after.faces};
   m.distortion = unfolding::measureDistortion(m.reference, after.positions, faces);
-  m.seenBefore = visibility::visibleFraction(u.before, u.view);
   m.seenAfter = visibility::visibleFraction(after, u.view);
   m.moved = faces;
   m.moved.insert(m.moved.end(), u.result.collar.begin(), u.result.collar.end());
@@ -80,7 +78,7 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
   const std::vector<io::VertexMap> visibilityMaps = {
       {"flux before", "", visibility::vertexFlux(u.before, u.view)},
       {"flux after", "", visibility::vertexFlux(after, u.view)},
-      {"seen before", "", m.seenBefore.vertex},
+      {"seen before", "", u.seenBefore.vertex},
       {"seen after", "", m.seenAfter.vertex}};
   io::writeGiftiShape(context.output("visibility.shape.gii"), visibilityMaps, structure);
   const Eigen::VectorXd movedRatio = m.areaRatio(m.moved);
@@ -97,11 +95,11 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
   std::vector<io::VertexMap> allVertexMaps = visibilityMaps;
   allVertexMaps.insert(allVertexMaps.end(), distortionMaps.begin(), distortionMaps.end());
   allVertexMaps.push_back({"region", "", label.keys.cast<double>()});
-  Eigen::VectorXd faceSeenBefore = m.seenBefore.face;
+  Eigen::VectorXd faceSeenBefore = u.seenBefore.face;
   if (after.faceCount() != u.before.faceCount()) {  // the region alone
     faceSeenBefore.resize(after.faceCount());
     for (std::size_t n = 0; n < faces.size(); ++n) {
-      faceSeenBefore[faces[n]] = m.seenBefore.face[u.chosen.faces[n]];
+      faceSeenBefore[faces[n]] = u.seenBefore.face[u.chosen.faces[n]];
     }
   }
   io::writeVtp(context.output("unfolded.vtp"), after, allVertexMaps,
@@ -153,8 +151,8 @@ unfolding::UnfoldSummary summaryOf(const Unfolded& u, const Measures& m) {
   s.visibility = {visibilityOf(m.reference), visibilityOf(after)};
   s.fluxVariance = {visibility::fluxVariance(m.reference, faces, u.view),
                     visibility::fluxVariance(after, faces, u.view)};
-  s.seen = {m.seenBefore.of(u.before, u.chosen.faces), m.seenAfter.of(after, faces)};
-  s.realVisibility = {m.seenBefore.realOf(u.before, u.chosen.faces),
+  s.seen = {u.seenBefore.of(u.before, u.chosen.faces), m.seenAfter.of(after, faces)};
+  s.realVisibility = {u.seenBefore.realOf(u.before, u.chosen.faces),
                       m.seenAfter.realOf(after, faces)};
   s.backfacing = {unfolding::backfacingShare(m.reference, faces, u.view),
                   unfolding::backfacingShare(after, faces, u.view)};

@@ -6,6 +6,7 @@
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/Unfolding/Unfold.h"
+#include "Explica/Visibility/VisibleFraction.h"
 
 #include <vector>
 
@@ -22,6 +23,7 @@ struct Unfolded {
   visibility::Viewpoints view;
   unfolding::Region chosen;                   ///< of `before`
   std::vector<geometry::FacePair> crossings;  ///< of `before`, sorted
+  visibility::VisibleFraction seenBefore;
   unfolding::UnfoldResult result;
   unfolding::Surround surround = unfolding::Surround::Elastic;
   double goal = 1;  ///< of the visibility

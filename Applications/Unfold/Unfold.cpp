@@ -213,28 +213,31 @@ Termination run(Context& context, const UnfoldSettings& s) {
   u.view = aim.view;
   u.surround = s.unfold.unfolder.surround;
   u.goal = s.unfold.targetVisibility.value_or(1.0);
-  std::optional<unfolding::Checkpoint> checkpoint;
-  if (s.resume) checkpoint = unfolding::readCheckpoint(context.outputFolder() / kUnfoldingState);
+  std::optional<unfolding::Checkpoint> from;
+  if (s.resume) from = unfolding::readCheckpoint(context.outputFolder() / kUnfoldingState);
   const Positions read = u.before.positions;
   u.crossings = checkStart(context, s, u.chosen, u.view, u.before);
   if (u.before.positions != read) {  // the result is compared with what a file holds
     u.reference = kReferenceFile;
     u.before.positions = unfolding::roundedToSingle(u.before.positions);
   }
+  u.seenBefore = visibility::visibleFraction(u.before, u.view);
   u.secondsStart = seconds();
   sayHowLong(context, s, u);
-  const StopScope kept(nullptr);  // what is reached is written
   {
     auto step = context.step("unfold");
     // What comes after the iterations, in times of the start: it tests, measures and writes, too.
-    constexpr double kRest = 2, kEachFrame = 0.2;
+    constexpr double kRest = 1.5, kEachFrame = 0.2;
     const TimeKept rest(u.secondsStart * (kRest + kEachFrame * s.unfold.frames));
     u.result = unfolding::unfold(u.before, u.chosen, u.view, s.unfold, context.monitor(),
-                                 checkpoint ? &*checkpoint : nullptr);
+                                 from ? &*from : nullptr);
+    const bool asItStood = u.result.history.back().iteration == 0;
+    if (asItStood && u.result.termination == Termination::Interrupted) throw Interrupted{};
     u.result.termination = causeOf(u.result.termination);
     step.iterations(u.result.history.back().iteration);
     step.termination(u.result.termination);
   }
+  const StopScope kept(nullptr);  // what is reached is written
   const double unfolded = seconds();
   auto step = context.step("measure and write");
   const Termination end = writeUnfolded(context, u);

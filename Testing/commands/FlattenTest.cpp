@@ -595,6 +595,28 @@ TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesO
   EXPECT_NE(stranger.err.find("another surface"), std::string::npos) << stranger;
 }
 
+TEST(FlattenLimit, AStopBetweenCutsAndMapLeavesTheCuts) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  const std::vector<std::string> words = {
+      "flatten",   folder / "sphere.surf.gii", "--cuts", "auto", "--threads", "1", "--out",
+      folder / "a"};
+  ASSERT_EQ(explica(words).exitCode, 0);
+  const std::string map = readText(folder / "a/flat.surf.gii");
+  const long mapped = firstCheckThatLeaves("flat.surf.gii", words, folder / "a");
+  const auto stopped = explica(words, stopAtCheck(mapped - 1));
+  ASSERT_TRUE(isInterrupted(stopped)) << stopped;
+  const auto steps = readJson(folder / "a/provenance.json")["steps"];
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0]["termination"], "finished");
+  EXPECT_EQ(steps[1]["termination"], "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(folder / "a/cuts.tsv"));
+  std::vector<std::string> again = words;
+  again.push_back("--resume");
+  EXPECT_EQ(explica(again).exitCode, 0);
+  EXPECT_EQ(readText(folder / "a/flat.surf.gii"), map);
+}
+
 TEST_F(FlattenCommand, TheWallOfAutomaticCutsIsTakenFromWhatIsGivenOrFound) {
   TemporaryFolder folder;
   const std::string mid = middle(folder, "left");

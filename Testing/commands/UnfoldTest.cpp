@@ -14,6 +14,7 @@
 #include "Explica/Testing/Command.h"
 #include "Explica/Testing/DepthBuffer.h"
 #include "Explica/Testing/Meshes.h"
+#include "Explica/Testing/Stops.h"
 #include "Explica/Unfolding/Region.h"
 
 #include <gtest/gtest.h>
@@ -121,6 +122,44 @@ TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
     EXPECT_EQ(readText(folder / ("whole/" + std::string(name))),
               readText(folder / ("part/" + std::string(name))))
         << name;
+  }
+}
+
+/// The surface as it stood is no result.
+TEST(UnfoldCommand, AStopBeforeTheFirstIterationLeavesNothing) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  const std::vector<std::string> words = {"unfold",    folder / "sphere.surf.gii",
+                                          "--center",  "0,0,30",
+                                          "--radius",  "25",
+                                          "--threads", "1",
+                                          "--out",     folder / "a"};
+  const long first = firstCheckThatLeaves("summary.json", words, folder / "a");
+  const auto stopped = explica(words, stopAtCheck(first));
+  EXPECT_TRUE(isInterrupted(stopped)) << stopped;
+  EXPECT_EQ(readJson(folder / "a/summary.json")["iterations"], 1);
+}
+
+TEST(UnfoldCommand, AStopWithinAStepGivesItUpAndTheRunGoesOnToTheSameBytes) {
+  TemporaryFolder folder;
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  const std::vector<std::string> words = {"unfold",    folder / "sphere.surf.gii",
+                                          "--center",  "0,0,30",
+                                          "--radius",  "25",
+                                          "--threads", "1",
+                                          "--out",     folder / "a"};
+  std::vector<std::string> again = words;
+  again.push_back("--resume");
+  const int end = explica(words).exitCode;
+  const std::string whole = readText(folder / "a/unfolded.surf.gii");
+  const long first = firstCheckThatLeaves("summary.json", words, folder / "a");
+  for (const long later : {1, 40}) {
+    std::filesystem::remove_all(folder / "a");
+    const auto stopped = explica(words, stopAtCheck(first + later));
+    EXPECT_TRUE(isInterrupted(stopped)) << stopped;
+    EXPECT_EQ(readJson(folder / "a/summary.json")["iterations"], 1);
+    EXPECT_EQ(explica(again).exitCode, end);
+    EXPECT_EQ(readText(folder / "a/unfolded.surf.gii"), whole);
   }
 }
 

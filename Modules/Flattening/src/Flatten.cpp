@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StateFile.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Flattening/RimContact.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -113,6 +114,7 @@ FlatMap flatten(const Disc& disc, const FlattenOptions& options, const Monitor& 
   const IntrinsicDisc piece = intrinsicDisc(disc);
   const auto areaError = [&](const FlatPositions& flat) { return meanAreaError(disc, flat); };
   Laid laid = layFlat(piece, areaError, options, monitor, resume);
+  const StopScope kept(nullptr);
   FlatMap map;
   map.energy = laid.energy;
   map.iterations = laid.iterations;

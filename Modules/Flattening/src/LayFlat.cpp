@@ -4,6 +4,7 @@
 #include "LayFlat.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Flattening/Coarsening.h"
 #include "Explica/Geometry/SparseCholesky.h"
 #include "MapSolver.h"
@@ -418,6 +419,7 @@ Laid layFlat(const IntrinsicDisc& disc,
              const FlattenOptions& options, const Monitor& monitor, const FlattenState* resume) {
   monitor.progress(0, "coarsening");
   Descent descent(disc, areaError, options, monitor);
+  const StopScope kept(nullptr);  // from here on the map is whole at any moment
   if (resume != nullptr && resume->level >= 0) {
     descent.resume(*resume);
   } else {

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Flattening/RimContact.h"
 #include "Explica/Geometry/Fixtures.h"
@@ -15,6 +16,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <random>
 
@@ -237,6 +239,30 @@ TEST(Flatten, StoppedOnACoarseLevelItGoesOnFromThere) {
   EXPECT_EQ(stopped.state.iterations, 2);
   expectOneToOne(disc, stopped);
   EXPECT_TRUE(flatten(disc, {}, {}, &stopped.state).positions == flatten(disc).positions);
+}
+
+/// Before there is a map nothing is worth going on for; from then on no stop loses it.
+TEST(Flatten, AStopWithinTheCoarseningEndsItAndAnyLaterOneLeavesAMap) {
+  const Disc disc = foldedCap();
+  std::atomic<int> asked = 0;
+  const auto stoppedAt = [&](int at) {
+    asked = 0;
+    Monitor monitor;
+    monitor.stopWanted = [at, &asked] { return ++asked > at; };
+    const StopScope scope(&monitor);
+    return flatten(disc, {}, monitor);
+  };
+  (void)stoppedAt(1 << 20);
+  const int questions = asked;
+  EXPECT_THROW((void)stoppedAt(0), Interrupted);
+  int mapped = 0;
+  try {
+    for (; mapped < questions; ++mapped) expectOneToOne(disc, stoppedAt(questions - 1 - mapped));
+  } catch (const Interrupted&) {
+  }
+  EXPECT_GT(mapped, 6);  // iterations
+  EXPECT_LT(mapped, questions);
+  EXPECT_THROW((void)stoppedAt((questions - mapped) / 2), Interrupted);
 }
 
 /// Lobes on thin stalks, a small lobe on a large one and so on: the map of few vertices into a

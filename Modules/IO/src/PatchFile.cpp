@@ -8,10 +8,11 @@
 
 #include "Explica/Core/WholeFile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <utility>
+#include <vector>
 
 namespace explica::io {
 namespace {
@@ -35,16 +36,17 @@ std::vector<bool> membersOf(const Patch& patch, Eigen::Index vertexCount) {
 
 /// Vertices at the sides that one face of the list alone has.
 std::vector<bool> rimOf(const Faces& faces, Eigen::Index vertexCount) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> count;
+  std::vector<std::pair<std::int32_t, std::int32_t>> sides;
+  sides.reserve(static_cast<std::size_t>(faces.size()));
   for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = faces(f, k), b = faces(f, (k + 1) % 3);
-      ++count[std::minmax(a, b)];
-    }
+    for (int k = 0; k < 3; ++k) sides.push_back(std::minmax(faces(f, k), faces(f, (k + 1) % 3)));
   }
+  std::ranges::sort(sides);
   std::vector<bool> rim(static_cast<std::size_t>(vertexCount));
-  for (const auto& [side, faceCount] : count) {
-    if (faceCount == 1) rim[side.first] = rim[side.second] = true;
+  for (auto side = sides.begin(); side != sides.end();) {
+    const auto next = std::find_if(side, sides.end(), [&](const auto& s) { return s != *side; });
+    if (next == side + 1) rim[side->first] = rim[side->second] = true;
+    side = next;
   }
   return rim;
 }

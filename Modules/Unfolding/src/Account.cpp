@@ -7,6 +7,7 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Geometry/FaceCrossing.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
 
 #include <Eigen/Geometry>
 
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <set>
 #include <utility>
 
 namespace explica::unfolding {
@@ -90,15 +90,12 @@ Eigen::VectorXd vertexMeans(const TriangleMesh& mesh, std::span<const std::int32
 
 Eigen::VectorXd vertexStrains(const TriangleMesh& reference, const Positions& deformed,
                               std::span<const std::int32_t> faces) {
-  std::set<std::pair<std::int32_t, std::int32_t>> edges;
-  for (const std::int32_t f : faces) {
-    for (int k = 0; k < 3; ++k) {
-      edges.insert(std::minmax(reference.faces(f, k), reference.faces(f, (k + 1) % 3)));
-    }
-  }
+  const Faces chosen = reference.faces(faces, Eigen::all);
+  const Edges edges = geometry::buildTopology(chosen, reference.vertexCount()).edges;
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(reference.vertexCount());
   Eigen::VectorXd counts = sums;
-  for (const auto& [a, b] : edges) {
+  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+    const std::int32_t a = edges(e, 0), b = edges(e, 1);
     const double length = (reference.positions.row(a) - reference.positions.row(b)).norm();
     if (!(length > 0)) continue;
     const double strain = std::abs((deformed.row(a) - deformed.row(b)).norm() / length - 1);

@@ -6,6 +6,7 @@
 #include "Frames.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Unfolding/Continuation.h"
@@ -202,21 +203,31 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   }
   if (options.frames > 0 && path.empty()) path.push_back(movingOnly(unfolder));
 
+  const Monitor* const asking = StopScope::current();
+  const StopScope kept(nullptr);  // what is reached is returned ...
   const double earlier = result.history.back().seconds;
   const double goal = options.targetVisibility.value_or(1.0);
   const auto reason = [&] {
     // Before the continuation, which steers: a run that goes on from here is steered once.
     if (monitor.shouldStop()) return Termination::Interrupted;
+    const UnfoldState before = unfolder.state();
     const std::vector<std::int32_t> movedThen = unfolder.movingVertices();
     const bool isFirstLook = unfolder.state().look.iteration < 0;
     const Termination byItself = continuation.next(unfolder, result.history);
     considerLook(unfolder, isFirstLook, best);
-    if (unfolder.movingVertices().size() != movedThen.size()) {
+    const bool grown = unfolder.movingVertices().size() != movedThen.size();
+    if (grown) {
       addStanding(unfolder, movedThen, best.moving);
       for (Positions& state : path) addStanding(unfolder, movedThen, state);
     }
     if (byItself != Termination::NotRun) return byItself;
-    return unfolder.step() ? Termination::NotRun : Termination::Stalled;
+    try {
+      const StopScope heard(grown ? nullptr : asking);  // ... but for a step, which is given up
+      return unfolder.step() ? Termination::NotRun : Termination::Stalled;
+    } catch (const Interrupted&) {
+      unfolder.restore(before);
+      return Termination::Interrupted;
+    }
   };
   while ((result.termination = reason()) == Termination::NotRun) {
     result.history.push_back(unfolder.record());

@@ -4,6 +4,7 @@
 
 #include "Explica/Testing/Command.h"
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,24 @@ inline std::vector<long> momentsOf(long checks, int number) {
     if (check <= checks && (moments.empty() || check > moments.back())) moments.push_back(check);
   }
   return moments;
+}
+
+/// The first check at which a stop of `words`, on one thread, leaves a file in `out`.
+inline long firstCheckThatLeaves(const std::string& file, const std::vector<std::string>& words,
+                                 const std::filesystem::path& out) {
+  const auto leaves = [&](long check) {
+    std::filesystem::remove_all(out);
+    (void)explica(words, stopAtCheck(check));
+    return std::filesystem::exists(out / file);
+  };
+  std::filesystem::remove_all(out);
+  long without = 0, with = checksFor(words);
+  while (with - without > 1) {
+    const long middle = (without + with) / 2;
+    (leaves(middle) ? with : without) = middle;
+  }
+  std::filesystem::remove_all(out);
+  return with;
 }
 
 /// Whether it ended as one that was asked to end, and says nothing else.

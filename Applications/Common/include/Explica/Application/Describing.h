@@ -14,6 +14,7 @@ template <class Work>
 void describing(Context& context, Termination& termination, const Work& work) {
   try {
     const StopScope abandoned(&context.monitor());
+    checkpoint();
     work();
   } catch (const Interrupted&) {
     context.warn("interrupted: some of what describes the result is left out");
