@@ -138,7 +138,8 @@ TEST(View, MakesAFilmOfFrames) {
   const auto other = explica({"view", folder / "u", "--film", folder / "u.avi"}, kNoDisplay);
   EXPECT_EQ(other.exitCode, 1) << other;
   EXPECT_NE(other.err.find(".webm"), std::string::npos) << other;
-  const auto nothing = explica({"view", folder / "p", "--film", folder / "u.avi"}, kNoDisplay);
+  const auto nothing =
+      explica({"view", folder.path().string(), "--film", folder / "u.avi"}, kNoDisplay);
   EXPECT_EQ(nothing.err, other.err) << "before anything is read or drawn";
 }
 
