@@ -156,15 +156,15 @@ TEST_F(Doubts, SurfacesThatStateNoFrameAreCounted) {
                                     "20"};
   };
   EXPECT_EQ(numberAfter(compare("a.off"), provenance::kFramesNotStated), 1);
-  EXPECT_TRUE(warned("does not say in which frame")) << last_;
+  EXPECT_TRUE(warned("coordinate system unknown")) << last_;
   EXPECT_EQ(numberAfter(compare("b.surf.gii"), provenance::kFramesNotStated), 0);
   // A file that is read twice is warned of once.
   EXPECT_GT(numberAfter({"compare", folder_ / "a.off", folder_ / "a.off", "--pairs", "20"},
                         provenance::kFramesNotStated),
             0);
-  const std::size_t first = last_.err.find("in which frame");
+  const std::size_t first = last_.err.find("coordinate system unknown");
   ASSERT_NE(first, std::string::npos) << last_;
-  EXPECT_EQ(last_.err.find("in which frame", first + 1), std::string::npos) << last_;
+  EXPECT_EQ(last_.err.find("coordinate system unknown", first + 1), std::string::npos) << last_;
 }
 
 TEST_F(Doubts, InputsChangedSinceTheirRecordAreCounted) {

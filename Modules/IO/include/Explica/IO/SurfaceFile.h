@@ -56,8 +56,9 @@ struct SurfaceMetadata {
 /// SurfaceOrigin::space of a surface whose file does not say it, and the note that goes with it.
 inline constexpr const char* kFrameNotStated = "not stated";
 inline constexpr const char* kFrameNotStatedNote =
-    "the file does not say in which frame its coordinates are; used as they stand (say it with "
-    "--surface-space scanner, or tkr and --fs-volume orig.mgz)";
+    "coordinate system unknown; scanner mm assumed (say it with --surface-space scanner, or tkr "
+    "and "
+    "--fs-volume orig.mgz)";
 
 /// Where a surface came from and how its file was understood; goes into the provenance record.
 struct SurfaceOrigin {

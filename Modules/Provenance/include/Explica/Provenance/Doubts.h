@@ -36,9 +36,8 @@ inline constexpr std::array kDoubts = {
           "volumes whose qform and sform place the voxels differently, one chosen by --xform"},
     Doubt{kPlacementsAssumed, "Placement assumed",
           "volumes whose header does not say where the voxels lie"},
-    Doubt{
-        kFramesNotStated, "Frame of a surface not stated",
-        "surfaces whose file does not say in which frame its coordinates are, used as they stand"},
+    Doubt{kFramesNotStated, "Coordinate system of a surface unknown",
+          "surfaces whose file does not state it, taken to be scanner mm"},
     Doubt{kInputsChanged, "Input changed since it was made",
           "files that differ from what the record beside them says was written"},
     Doubt{kInputsContradict, "Inputs contradict each other",
