@@ -149,14 +149,14 @@ io::VertexMap edgeMap(const planar::Curve& curve, const planar::Region& region, 
 }
 
 void writeUnfolding(Context& context, const PolygonSettings& s,
-                    const planar::PolygonUnfolding& result, const planar::Viewpoints& view) {
+                    const planar::PolygonUnfolding& result, const planar::Viewpoints& view,
+                    const planar::VisiblePart& seen) {
   io::writePolygonCsv(context.output("unfolded.csv"), result.curve.positions);
   std::vector<io::VertexMap> edgeMaps;
   if (result.curve.closed) {
     edgeMaps = {edgeMap(result.curve, result.region, "flux",
                         planar::polygonVisibility(result.curve, result.region, view).edgeFlux),
-                edgeMap(result.curve, result.region, "seen",
-                        planar::visiblePart(result.curve, result.region, view).edgeSeen)};
+                edgeMap(result.curve, result.region, "seen", seen.edgeSeen)};
   }
   io::writePolygonVtp(context.output("unfolded.vtp"), result.curve.positions, {}, edgeMaps);
   writeTextFile(context.output("evolution.tsv"), tableOf(result.history));
@@ -209,6 +209,7 @@ Termination run(Context& context, const PolygonSettings& s) {
 
   sayHowLongUnfoldingIs(context, s, task);
   auto step = context.step("unfold");
+  const auto seenBefore = planar::visiblePart(curve, region, *view);
   planar::PolygonUnfolding result = planar::unfoldPolygon(
       curve, region, *view, s.unfolding, context.monitor(), state ? &*state : nullptr);
   if (result.history.back().iteration == 0) checkpoint(context.monitor());
@@ -216,14 +217,14 @@ Termination run(Context& context, const PolygonSettings& s) {
   result.termination = causeOf(result.termination);
   step.iterations(result.history.back().iteration);
   step.termination(result.termination);
-  writeUnfolding(context, s, result, *view);
+  const auto seen = planar::visiblePart(result.curve, result.region, *view);
+  writeUnfolding(context, s, result, *view, seen);
 
   context.results(planar::PolygonUnfoldSummary{
       coordinatesOf(*view), view->weights, s.unfolding.targetVisibility, !s.unfolding.noLength,
-      result.history.front(), result.history.back(), planar::visiblePart(curve, region, *view),
-      planar::visiblePart(result.curve, result.region, *view), result.intersectionsFinal.size(),
-      result.firstCrossing, result.verticesMerged, result.seconds, result.secondsTopology,
-      result.termination});
+      result.history.front(), result.history.back(), seenBefore, seen,
+      result.intersectionsFinal.size(), result.firstCrossing, result.verticesMerged, result.seconds,
+      result.secondsTopology, result.termination});
   return result.termination;
 }
 

@@ -3,6 +3,8 @@
 
 #include "EdgeTree.h"
 
+#include "Explica/Core/StopScope.h"
+
 #include <algorithm>
 
 namespace explica::planar {
@@ -18,7 +20,9 @@ EdgeTree::EdgeTree(const Curve& curve, const std::function<bool(int edge)>& move
 }
 
 int EdgeTree::build(const Curve& curve, int firstEdge, int edgeCount, bool moves) {
-  constexpr int kLeafSize = 1;  // edges of a leaf
+  constexpr int kLeafSize = 1;   // edges of a leaf
+  constexpr int kAtOnce = 1024;  // edges before a stop is heard
+  if (edgeCount > kAtOnce) checkpoint();
   Node node;
   node.firstEdge = firstEdge;
   node.edgeCount = edgeCount;

@@ -5,6 +5,8 @@
 
 #include "Segment.h"
 
+#include "Explica/Core/StopScope.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -109,7 +111,9 @@ std::vector<VertexEdgePair> nearbyPairs(const Curve& curve, const std::vector<bo
   const double meanEdge = edgeLengths(curve).mean();
   const VertexCells cells(curve.positions, std::max(reach, meanEdge));
   std::vector<int> near;
+  constexpr int kAtOnce = 1024;  // edges before a stop is heard
   for (int e = 0; e < curve.edgeCount(); ++e) {
+    if (e % kAtOnce == 0) checkpoint();
     const int f = curve.next(e);
     const Point2 a = curve.point(e);
     const Point2 b = curve.point(f);

@@ -3,6 +3,8 @@
 
 #include "Explica/Planar/PolygonCollision.h"
 
+#include "Explica/Core/StopScope.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
@@ -36,6 +38,16 @@ TEST(PolygonCollision, BarrierIsSmoothAndItsDerivativesAreRight) {
   }
   EXPECT_EQ(barrier(2, range).value, 0);
   EXPECT_NEAR(barrier(2 - 1e-6, range).curvature, 0, 1e-4);
+}
+
+TEST(PolygonCollision, AStopIsHeardWherePairsAreSought) {
+  const Curve curve = vertexOverEdge({0.3, 1});
+  const std::vector<bool> moving(5, true);
+  EXPECT_FALSE(nearbyPairs(curve, moving, edgeLengths(curve), 2, 2).empty());
+  Monitor monitor;
+  monitor.stopWanted = [] { return true; };
+  const StopScope scope(&monitor);
+  EXPECT_THROW((void)nearbyPairs(curve, moving, edgeLengths(curve), 2, 2), Interrupted);
 }
 
 TEST(PolygonCollision, HeadOnStepEndsJustBeforeTheContact) {
