@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Application/Command.h"
+#include "Explica/Application/TimeKept.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
@@ -282,6 +283,7 @@ Termination run(Context& context, const GlmSettings& s) {
   {
     auto step = context.step("inference");
     complete = inferAll(context, s, o, fitted, results);
+    if (!complete) step.termination(causeOf(Termination::Interrupted));
   }
   complete = writeAll(context, s, o, fitted, results) && complete;
   return complete ? Termination::NotRun : Termination::Interrupted;

@@ -80,6 +80,14 @@ TEST(Glm, DrawsManyPeopleWithoutTheirNames) {
             1200);
 }
 
+/// How a step of a record ended.
+std::string endOf(const nlohmann::json& record, const std::string& name) {
+  for (const auto& step : record["steps"]) {
+    if (step["name"] == name) return step["termination"];
+  }
+  return "no such step";
+}
+
 /// Stopped anywhere after the models are known, it has them, and says how many shuffles were made.
 TEST(Glm, StoppedInItsPermutationsHasTheModels) {
   TemporaryFolder folder;
@@ -99,6 +107,7 @@ TEST(Glm, StoppedInItsPermutationsHasTheModels) {
     const auto summary = readJson(folder / "out/summary.json");
     EXPECT_EQ(summary["termination"], "interrupted");
     EXPECT_LT(summary["shuffles"], 720);
+    EXPECT_EQ(endOf(readJson(folder / "out/provenance.json"), "inference"), "interrupted");
     without += summary["shuffles"] == 0 ? 1 : 0;
     EXPECT_EQ(row[10] == "n/a", summary["shuffles"] == 0);
     row[10] = whole[10];  // its family-wise P
