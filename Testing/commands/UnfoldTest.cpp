@@ -125,15 +125,20 @@ TEST(UnfoldCommand, ResumedRunsWriteTheBytesOfUninterruptedOnes) {
   }
 }
 
+/// A patch of few faces by one thread, so that checks come in one order.
+std::vector<std::string> onSmallSphere(const TemporaryFolder& folder) {
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  return {"unfold",    folder / "sphere.surf.gii",
+          "--center",  "0,0,30",
+          "--radius",  "25",
+          "--threads", "1",
+          "--out",     folder / "a"};
+}
+
 /// The surface as it stood is no result.
 TEST(UnfoldCommand, AStopBeforeTheFirstIterationLeavesNothing) {
   TemporaryFolder folder;
-  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
-  const std::vector<std::string> words = {"unfold",    folder / "sphere.surf.gii",
-                                          "--center",  "0,0,30",
-                                          "--radius",  "25",
-                                          "--threads", "1",
-                                          "--out",     folder / "a"};
+  const std::vector<std::string> words = onSmallSphere(folder);
   const long first = firstCheckThatLeaves("summary.json", words, folder / "a");
   const auto stopped = explica(words, stopAtCheck(first));
   EXPECT_TRUE(isInterrupted(stopped)) << stopped;
@@ -142,12 +147,7 @@ TEST(UnfoldCommand, AStopBeforeTheFirstIterationLeavesNothing) {
 
 TEST(UnfoldCommand, AStopWithinAStepGivesItUpAndTheRunGoesOnToTheSameBytes) {
   TemporaryFolder folder;
-  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
-  const std::vector<std::string> words = {"unfold",    folder / "sphere.surf.gii",
-                                          "--center",  "0,0,30",
-                                          "--radius",  "25",
-                                          "--threads", "1",
-                                          "--out",     folder / "a"};
+  const std::vector<std::string> words = onSmallSphere(folder);
   std::vector<std::string> again = words;
   again.push_back("--resume");
   const int end = explica(words).exitCode;
