@@ -121,13 +121,18 @@ void writeStages(Context& context, const PolygonSettings& s, const planar::Polyg
                  const planar::Viewpoints& view) {
   std::vector<double> progress;
   for (const planar::PolygonIteration& row : result.history) progress.push_back(row.visibility);
+  const bool mayCross = !result.intersectionsInitial.empty() || result.firstCrossing >= 0;
   std::vector<planar::EvolutionStage> stages;
   for (std::size_t k : planar::evenStages(progress, static_cast<std::size_t>(s.stages))) {
     const planar::PolygonIteration& row = result.history[k];
     const std::string title =
         row.iteration == 0 ? "start" : "iteration " + std::to_string(row.iteration);
-    stages.push_back({title, result.path[k].positions, result.path[k].region, row.visibility,
-                      row.variance, row.length});
+    const planar::PolygonState& state = result.path[k];
+    planar::EvolutionStage stage{
+        title, state.positions, state.region, row.visibility, row.variance, row.length, {}};
+    if (mayCross)
+      stage.crossings = planar::intersectingEdges({state.positions, result.curve.closed});
+    stages.push_back(std::move(stage));
   }
   writeTextFile(context.output("evolution.svg"),
                 planar::drawEvolution(result.curve.closed, view, stages));

@@ -145,12 +145,17 @@ std::vector<std::array<int, 2>> intersectingEdges(const Curve& curve) {
     Point2 low, high;
     int edge;
   };
-  std::vector<Box> boxes;
+  std::vector<std::pair<double, int>> leftmost;  // coordinate and edge: what is sorted is small
   for (int e = 0; e < curve.edgeCount(); ++e) {
+    leftmost.emplace_back(std::min(curve.point(e).x(), curve.point(curve.next(e)).x()), e);
+  }
+  std::ranges::sort(leftmost);
+  std::vector<Box> boxes;
+  boxes.reserve(leftmost.size());
+  for (const auto& [x, e] : leftmost) {
     const Point2 a = curve.point(e), b = curve.point(curve.next(e));
     boxes.push_back({a.cwiseMin(b), a.cwiseMax(b), e});
   }
-  std::ranges::stable_sort(boxes, [](const Box& a, const Box& b) { return a.low.x() < b.low.x(); });
   std::vector<std::array<int, 2>> pairs;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     const Box& one = boxes[k];

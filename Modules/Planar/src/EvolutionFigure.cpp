@@ -175,9 +175,8 @@ std::vector<int> drawnOf(const Curve& curve, const std::vector<int>& vertices, c
   return drawn;
 }
 
-/// Returns the number of pairs of edges that cross.
-std::size_t drawStage(std::string& page, const Panel& panel, bool closed, const Viewpoints& view,
-                      const EvolutionStage& stage) {
+void drawStage(std::string& page, const Panel& panel, bool closed, const Viewpoints& view,
+               const EvolutionStage& stage) {
   const Curve curve{stage.positions, closed};
   const Region& region = stage.region;
   const PolygonVisibility visibility = polygonVisibility(curve, region, view);
@@ -205,13 +204,11 @@ std::size_t drawStage(std::string& page, const Panel& panel, bool closed, const 
     page += "<circle cx=\"" + printed("%.2f", p.x()) + "\" cy=\"" + printed("%.2f", p.y()) +
             "\" r=\"" + printed("%.2f", 0.75 * width) + "\" fill=\"#222\"/>\n";
   }
-  const auto crossings = intersectingEdges(curve);
-  for (const auto& crossing : crossings) {
+  for (const auto& crossing : stage.crossings) {
     const Point2 p = panel.place(crossingOf(curve, crossing));
     page += "<circle cx=\"" + printed("%.2f", p.x()) + "\" cy=\"" + printed("%.2f", p.y()) +
             "\" r=\"7\"" + kRing + "/>\n";
   }
-  return crossings.size();
 }
 
 }  // namespace
@@ -261,7 +258,8 @@ std::string drawEvolution(bool closed, const Viewpoints& view,
     // Of several viewpoints the first and the last.
     drawArrow(page, panel, view.points.front());
     if (view.points.size() > 1) drawArrow(page, panel, view.points.back());
-    const std::size_t crossings = drawStage(page, panel, closed, view, stage);
+    drawStage(page, panel, closed, view, stage);
+    const std::size_t crossings = stage.crossings.size();
     anyCrossing = anyCrossing || crossings > 0;
     const std::string numbers = "visibility " + printed("%.3f", stage.visibility) +
                                 ", flux variance " + printed("%.3f", stage.variance) + ", length " +

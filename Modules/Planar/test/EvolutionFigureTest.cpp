@@ -18,7 +18,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
 }
 
 EvolutionStage stageOf(const Curve& curve) {
-  return {"start", curve.positions, {0, 2}, 0.5, 0.1, 3};
+  return {"start", curve.positions, {0, 2}, 0.5, 0.1, 3, intersectingEdges(curve)};
 }
 
 TEST(EvolutionFigure, HasAPanelAStageAndNoRingWithoutCrossings) {
@@ -47,7 +47,8 @@ TEST(EvolutionFigure, OfManyVerticesDrawsWhatAPageTellsApart) {
   whole.region = {0, round.edgeCount()};
   EXPECT_LT(drawEvolution(true, Point2(0, 100), {whole}).size(), 2000000U);
   const Curve square = makeCircle(4, 10);
-  whole = {"start", square.positions, {0, 4}, 0.5, 0.1, 3};
+  whole = stageOf(square);
+  whole.region = {0, 4};
   EXPECT_EQ(countOf(drawEvolution(true, Point2(0, 100), {whole}), "stroke-linecap"), 4U)
       << "the closing edge, too";
 }

@@ -4,6 +4,7 @@
 
 #include "Explica/Planar/PolygonVisibility.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,8 @@ struct EvolutionStage {
   Region region;
   double visibility = 0;
   double variance = 0;
-  double length = 0;  ///< of the region, mm
+  double length = 0;                          ///< of the region, mm
+  std::vector<std::array<int, 2>> crossings;  ///< pairs of edges that cross, each drawn as a ring
 };
 
 /// Draws stages side by side as SVG: the tissue filled, the region heavy, its edges shaded by their
