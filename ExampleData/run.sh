@@ -13,7 +13,14 @@ Testing/setup.sh --program
 templates=/usr/share/mricron/templates
 out=build/colin27
 echo "2 of 3: from T1 to unfolded patches; steps that an earlier run has done are kept"
-build/bin/explica run "$templates/ch2bet.nii.gz" --atlas "$templates/aal.nii.gz" --out "$out" --resume "$@" || status=$?
+explica_run() {
+  build/bin/explica run "$templates/ch2bet.nii.gz" --atlas "$templates/aal.nii.gz" --out "$out" --resume "$@"
+}
+# The default template is Colin27, too: its surfaces and spheres serve as the template, and are not made twice.
+explica_run --steps segment,surface,sphere || status=$?
+if [ "${status:-0}" = 0 ]; then
+  explica_run --template "$out" "$@" || status=$?
+fi
 # 3: stopped before its goal, with results.
 if [ "${status:-0}" != 0 ] && [ "${status:-0}" != 3 ]; then
   exit "$status"
