@@ -182,6 +182,16 @@ void checkRoles(const Histogram& histogram, const TissueOptions& options, const 
   }
 }
 
+/// Visits a voxel and those that share a corner with it.
+template <class Visit>
+void visitAround(const Grid& grid, std::size_t v, const Visit& visit) {
+  const auto at = grid.subscripts(v);
+  for (int n = 0; n < 27; ++n) {
+    const int i = at[0] + n % 3 - 1, j = at[1] + n / 3 % 3 - 1, k = at[2] + n / 9 - 1;
+    if (grid.contains(i, j, k)) visit(grid.linear(i, j, k));
+  }
+}
+
 /// Beyond a border line voxels have no label of their own: near it they are what the line is.
 /// Where fluid's line is near, too, the nearer of both counts.
 void growBorderLines(const Mask& fluid, TissueMasks& masks) {
@@ -197,13 +207,9 @@ void growBorderLines(const Mask& fluid, TissueMasks& masks) {
   for (int round = 0; round < kRounds; ++round) {
     std::map<std::size_t, int> votes;  // of voxels beside the front, white less fluid
     for (const std::size_t v : front) {
-      const auto at = grid.subscripts(v);
-      for (int n = 0; n < 27; ++n) {
-        const int i = at[0] + n % 3 - 1, j = at[1] + n / 3 % 3 - 1, k = at[2] + n / 9 - 1;
-        if (!grid.contains(i, j, k)) continue;
-        const std::size_t w = grid.linear(i, j, k);
+      visitAround(grid, v, [&](std::size_t w) {
         if (side[w] == kUnknown && masks.insulated[w]) votes[w] += side[v] == kWhite ? 1 : -1;
-      }
+      });
     }
     front.clear();
     for (const auto& [v, lead] : votes) {
@@ -371,12 +377,7 @@ CorticalTissue withCortexAllAround(CorticalTissue tissue) {
     const bool isBare = std::any_of(neighbours.begin(), neighbours.end(), [&](std::int64_t w) {
       return w >= 0 && !(tissue.tissue[w] > 0);
     });
-    if (!isBare) continue;
-    const auto at = grid.subscripts(v);
-    for (int n = 0; n < 27; ++n) {
-      const int i = at[0] + n % 3 - 1, j = at[1] + n / 3 % 3 - 1, k = at[2] + n / 9 - 1;
-      if (grid.contains(i, j, k)) near(i, j, k) = 1;
-    }
+    if (isBare) visitAround(grid, v, [&](std::size_t w) { near[w] = 1; });
   }
   const Components places = componentsOf(near);
   const std::int32_t medialWall = places.largest();
