@@ -24,7 +24,7 @@ struct SphereSettings {
 void declare(Declaration& d, SphereSettings& s) {
   d.synopsis("a closed surface one to one on a sphere, with little change of areas and shapes")
       .description(
-          R"(Maps a closed surface without handles onto a sphere of 100 mm. Vertices are removed until a tetrahedron remains and are put back one by one, so that no face ever turns over; on several levels in between the map's energy is lowered: the mean over the surface of |J|^2 / (2 d) + w (d + 1/d) / 2, with J the linear map of a face, d its ratio of areas and w the --balance between areas and shapes. The result is checked exactly in the single precision in which it is written. The sphere is rotated to agree with the surface's directions.)")
+          R"(Maps a closed surface without handles onto a sphere of 100 mm. Vertices are removed until a tetrahedron remains and are put back one by one, so that no face ever turns over; on several levels in between the map's energy is lowered: the mean over the surface of |J|^2 / (2 d) + w |d - 1/d| / 2, with J the linear map of a face, d its ratio of areas and w the --balance between areas and shapes; the absolute value, rounded at 0, keeps most areas as they are and lets few give way. The result is checked exactly in the single precision in which it is written. The sphere is rotated to agree with the surface's directions.)")
       .reference("Praun, Hoppe 2003, ACM Trans. Graphics 22(3):340-349")
       .reference("Shtengel et al. 2017, ACM Trans. Graphics 36(4):38")
       .example("explica sphere lh.white --out sphere", "sphere/lh.sphere, and as GIFTI")

@@ -49,6 +49,20 @@ std::string registered(const TemporaryFolder& folder, const std::string& name,
   return folder / (name + "/sphere.reg.surf.gii");
 }
 
+TEST(SpherePeople, APersonKeepsAreasAndShapes) {
+  const fs::path people = kSharedData / "oasis_sd";
+  if (!fs::exists(people)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const auto run =
+      explica({"sphere", (people / "OAS1_0003/lh.white").string(), "--out", folder / "sphere"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const Json summary = Json::parse(std::ifstream(folder / "sphere/summary.json"));
+  EXPECT_EQ(summary["turned_over"], 0);
+  EXPECT_LE(summary["areal_log2_mean"], 0.20);
+  EXPECT_LE(summary["stretch_median"], 1.5);
+  EXPECT_LE(summary["stretch_p95"], 2.6);
+}
+
 TEST(RegisterPeople, FsaverageFiveOntoFsaverageIsTheIdentity) {
   const fs::path five = kSharedData / "fsaverage5/fs_binary";
   if (!fs::exists(five)) GTEST_SKIP() << "skipped: no real data";

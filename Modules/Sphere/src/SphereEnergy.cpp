@@ -33,13 +33,14 @@ double determinant(const Vector& a, const Vector& b, const Vector& c) {
 
 SphereDensity sphereDensity(double s, double d, const MapWeights& weights) {
   if (!(d > 0)) return {kInfinity};
-  const double w = weights.balance, inverse = 1 / d;
+  const double w = weights.balance, e = weights.corner, inverse = 1 / d;
+  const double h = (d - inverse) / 2, r = std::hypot(h, e), hD = (1 + inverse * inverse) / 2;
   SphereDensity psi;
-  psi.value = (s * inverse + w * (d + inverse)) / 2;
+  psi.value = s * inverse / 2 + w * r;
   psi.dS = inverse / 2;
-  psi.dD = (w - (s + w) * inverse * inverse) / 2;
+  psi.dD = -s * inverse * inverse / 2 + w * h / r * hD;
   psi.dSD = -inverse * inverse / 2;
-  psi.dDD = (s + w) * inverse * inverse * inverse;
+  psi.dDD = (s - w * h / r) * inverse * inverse * inverse + w * e * e * hD * hD / (r * r * r);
   if (weights.barrier > 0) {
     const double m = weights.mostAreal * std::log(2.0), l = std::log(d) / m;
     const double room = 1 - l * l;
@@ -59,6 +60,10 @@ SphereDensity sphereDensity(double s, double d, const MapWeights& weights) {
     psi.value *= share;
   }
   return psi;
+}
+
+double convexDD(const SphereDensity& psi, double squaredJacobian) {
+  return std::max(psi.dDD, 2 * squaredJacobian * psi.dSD * psi.dSD / psi.dS);
 }
 
 SphereFace sphereFace(const RestFace& rest, const std::array<Point, 3>& y) {
@@ -119,7 +124,7 @@ geometry::FaceSystem::Term SphereEnergy::term(const Positions& sphere,
   const RestFace& rest = rest_[f];
   const SphereFace face = sphereFace(rest, y);
   const SphereDensity psi = sphereDensity(face.squaredJacobian, face.areaRatio, weights_);
-  const double w = share_[f];
+  const double w = share_[f], dDD = convexDD(psi, face.squaredJacobian);
   std::array<Eigen::Vector2d, 3> s, d;
   geometry::FaceSystem::Term term;
   for (int k = 0; k < 3; ++k) {
@@ -136,7 +141,7 @@ geometry::FaceSystem::Term SphereEnergy::term(const Positions& sphere,
       const double dot = (std::conj(rest.gradient[j]) * rest.gradient[k]).real();
       Eigen::Matrix2d block = stiffness * dot * frameJ.transpose() * frameK;
       block += psi.dSD * (s[j] * d[k].transpose() + d[j] * s[k].transpose());
-      block += psi.dDD * d[j] * d[k].transpose();
+      block += dDD * d[j] * d[k].transpose();
       if (j != k) {
         // Of y_j . (y_k x y_m) by y_k, or of its negative where (j, k, m) is not in order.
         const Vector& m = y[3 - j - k];

@@ -24,6 +24,7 @@ namespace {
 using flattening::CoarseningLevel;
 
 constexpr Eigen::Index kCoarsest = 4;  // vertices: a tetrahedron
+constexpr double kCorner = 0.1;        // e of MapWeights: areas within a tenth count as kept
 constexpr int kCoarseIterations = 60;  // at most: finer levels go on
 
 /// The last four vertices as a regular tetrahedron, faces outwards.
@@ -58,7 +59,9 @@ Positions aboutCentre(const TriangleMesh& surface, const Eigen::VectorXd& areas)
 class Ascent {
  public:
   Ascent(const SphereMapOptions& options, Eigen::Index vertexCount, const Monitor& monitor)
-      : options_(options), weights_{options.balance, kInfinity, 0}, monitor_(monitor) {
+      : options_(options),
+        weights_{.balance = options.balance, .corner = kCorner},
+        monitor_(monitor) {
     map_.positions = Positions::Zero(vertexCount, 3);
   }
 

@@ -91,10 +91,10 @@ StarTerms evaluate(const std::vector<RestFace>& rest, const Ring& ring, const Ma
     const Eigen::Vector2d s = frame.transpose() * face.gradientS[0];
     const Eigen::Vector2d d = frame.transpose() * face.gradientD[0];
     terms.gradient += w * (psi.dS * s + psi.dD * d);
-    terms.hessian +=
-        w * ((2 * psi.dS + std::abs(psi.dD) / 2) * std::norm(rest[n].gradient[0]) *
-                 Eigen::Matrix2d::Identity() +
-             psi.dSD * (s * d.transpose() + d * s.transpose()) + psi.dDD * d * d.transpose());
+    terms.hessian += w * ((2 * psi.dS + std::abs(psi.dD) / 2) * std::norm(rest[n].gradient[0]) *
+                              Eigen::Matrix2d::Identity() +
+                          psi.dSD * (s * d.transpose() + d * s.transpose()) +
+                          convexDD(psi, face.squaredJacobian) * d * d.transpose());
   }
   return terms;
 }

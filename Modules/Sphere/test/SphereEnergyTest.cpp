@@ -32,18 +32,20 @@ Uneven unevenMap(const MapWeights& weights) {
 }
 
 TEST(SphereDensity, DerivativesAreThoseOfTheValue) {
-  const MapWeights weights{3, 2, 0.1};
   const double h = 1e-6;
-  for (const double s : {2.5, 4.0}) {
-    for (const double d : {0.4, 1.0, 2.2}) {
-      const auto at = [&](double ds, double dd) { return sphereDensity(s + ds, d + dd, weights); };
-      const SphereDensity psi = at(0, 0);
-      EXPECT_NEAR(psi.dS, (at(h, 0).value - at(-h, 0).value) / (2 * h), 1e-8);
-      EXPECT_NEAR(psi.dD, (at(0, h).value - at(0, -h).value) / (2 * h), 1e-7);
-      EXPECT_NEAR(psi.dSD, (at(0, h).dS - at(0, -h).dS) / (2 * h), 1e-7);
-      EXPECT_NEAR(psi.dDD, (at(0, h).dD - at(0, -h).dD) / (2 * h), 1e-6);
+  for (const MapWeights weights : {MapWeights{3, 2, 0.1}, MapWeights{.balance = 3, .corner = 0.2}})
+    for (const double s : {2.5, 4.0}) {
+      for (const double d : {0.4, 1.0, 2.2}) {
+        const auto at = [&](double ds, double dd) {
+          return sphereDensity(s + ds, d + dd, weights);
+        };
+        const SphereDensity psi = at(0, 0);
+        EXPECT_NEAR(psi.dS, (at(h, 0).value - at(-h, 0).value) / (2 * h), 1e-8);
+        EXPECT_NEAR(psi.dD, (at(0, h).value - at(0, -h).value) / (2 * h), 1e-7);
+        EXPECT_NEAR(psi.dSD, (at(0, h).dS - at(0, -h).dS) / (2 * h), 1e-7);
+        EXPECT_NEAR(psi.dDD, (at(0, h).dD - at(0, -h).dD) / (2 * h), 1e-6);
+      }
     }
-  }
 }
 
 TEST(SphereDensity, IsLeastWhereAreasAndAnglesAreKeptAndInfiniteBeyondItsBounds) {
@@ -86,15 +88,17 @@ TEST(SphereEnergy, GradientIsThatOfTheValue) {
 }
 
 TEST(SphereEnergy, FacesBendUpwards) {
-  const auto [energy, sphere] = unevenMap({3, kInfinity, 0});
-  std::vector<TangentFrame> frames;
-  for (Eigen::Index v = 0; v < sphere.rows(); ++v)
-    frames.push_back(tangentFrame(sphere.row(v).transpose()));
-  for (Eigen::Index f = 0; f < energy.faces().rows(); ++f) {
-    const auto term = energy.term(sphere, frames, f);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(term.hessian);
-    // What the sphere's curvature leaves is a share of its angle squared.
-    EXPECT_GT(eigen.eigenvalues()[0], -0.05 * eigen.eigenvalues()[5]) << f;
+  for (const double corner : {1.0, 0.1}) {
+    const auto [energy, sphere] = unevenMap({.balance = 3, .corner = corner});
+    std::vector<TangentFrame> frames;
+    for (Eigen::Index v = 0; v < sphere.rows(); ++v)
+      frames.push_back(tangentFrame(sphere.row(v).transpose()));
+    for (Eigen::Index f = 0; f < energy.faces().rows(); ++f) {
+      const auto term = energy.term(sphere, frames, f);
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(term.hessian);
+      // What the sphere's curvature leaves is a share of its angle squared.
+      EXPECT_GT(eigen.eigenvalues()[0], -0.05 * eigen.eigenvalues()[5]) << f;
+    }
   }
 }
 

@@ -70,7 +70,7 @@ TEST(SphereMap, OfANeedleIsOneToOne) {
   }
   const SphereMap map = mapToSphere(needle);
   expectOneToOne(needle, map);
-  EXPECT_LT(sphereDistortion(needle, map.positions).arealMean, 1);
+  EXPECT_LT(sphereDistortion(needle, map.positions).arealMean, 1.2);
 }
 
 TEST(SphereMap, OfRandomFoldedSurfacesIsOneToOneAndTheBalanceIsATradeOff) {

@@ -15,17 +15,20 @@ using flattening::RestFace;
 
 /// What a map of a surface onto the unit sphere costs, per area:
 ///
-///     psi = |J|^2 / (2 d)  +  w (d + 1 / d) / 2  -  b log(1 - (log2(d) / m)^2),
+///     psi = |J|^2 / (2 d)  +  w sqrt(((d - 1 / d) / 2)^2 + e^2)  -  b log(1 - (log2(d) / m)^2),
 ///
 /// J the linear map of a face onto its flat image, d its signed ratio of areas.  The first term is
-/// least, 1, for maps that keep angles, the second, w, for maps that keep areas; both are infinite
-/// at d = 0.  The last is infinite where areas change by m doublings.
+/// least, 1, for maps that keep angles, the second, w e, for maps that keep areas; both are
+/// infinite at d = 0.  With e = 1 the second is w (d + 1 / d) / 2, and all areas give way a little;
+/// with a small e it is w |d - 1 / d| / 2, and most are kept while few give way.  The last is
+/// infinite where areas change by m doublings.
 struct MapWeights {
   double balance = 1;            ///< w > 0
   double mostAreal = kInfinity;  ///< m > 0
   double barrier = 0;            ///< b >= 0
   double whole = 1;              ///< factor of the sum over faces
   bool symmetric = false;        ///< (1 + d) / 2 times psi: of the inverse map it is the same
+  double corner = 1;             ///< e > 0
 };
 
 /// psi and its derivatives by S = |J|^2 and by d.
@@ -38,6 +41,9 @@ struct SphereDensity {
 /// @return value +infinity where psi has none
 [[nodiscard]] SphereDensity sphereDensity(double squaredJacobian, double areaRatio,
                                           const MapWeights& weights);
+
+/// The bend by d with which psi is convex in (J, d): its own, or the least.
+[[nodiscard]] double convexDD(const SphereDensity& psi, double squaredJacobian);
 
 /// A face's |J|^2 and d = det(y0, y1, y2) / (2 area), which is the ratio of areas up to the square
 /// of the face's angle, and their derivatives by its corners.
@@ -64,9 +70,9 @@ class SphereEnergy {
   /// Gradient and a positive semi-definite approximation of the Hessian by the tangent coordinates
   /// of a face's corners.
   ///
-  /// psi is convex in (J, d).  The bend of d, by which psi fails to be convex in the corners, is
-  /// split as d = |p|^2 - |q|^2, |J|^2 = 2 |p|^2 + 2 |q|^2 (z -> p z + q conj(z)), and only the
-  /// part that is convex under the sign of psi_d stays [Shtengel2017].
+  /// convexDD() keeps it convex in (J, d).  The bend of d, by which it fails to be convex in the
+  /// corners, is split as d = |p|^2 - |q|^2, |J|^2 = 2 |p|^2 + 2 |q|^2 (z -> p z + q conj(z)), and
+  /// only the part that is convex under the sign of psi_d stays [Shtengel2017].
   [[nodiscard]] geometry::FaceSystem::Term term(const Positions& sphere,
                                                 const std::vector<TangentFrame>& frames,
                                                 Eigen::Index face) const;

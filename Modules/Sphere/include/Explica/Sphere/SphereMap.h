@@ -15,7 +15,7 @@ namespace explica::sphere {
 
 /// How a closed surface is brought onto a sphere.
 struct SphereMapOptions {
-  double balance = 3;       ///< w of MapWeights: areas against angles
+  double balance = 0.75;    ///< w of MapWeights: areas against angles
   double tolerance = 1e-4;  ///< a level ends where a step promises less, of the energy
   int maxIterations = 100;  ///< of the finest level
 };
