@@ -179,7 +179,7 @@ void describe(Results& t, const Measurement& m) {
   const double tissue =
       static_cast<double>(m.annulus.count()) * (m.annulus.planar ? h[0] * h[1] : h.prod());
   t.number("grid_coverage", "Volume of the grid over that of the tissue", "",
-           "Cells between trajectories that do not reach both boundaries are missing.",
+           "Cells where thickness could not be measured are missing.",
            m.grid ? std::optional(m.grid->volume / tissue) : std::nullopt);
 }
 
