@@ -80,12 +80,13 @@ std::string sideOf(const RegionsSettings& s) {
   return structure == "CortexRight" ? "R" : "L";
 }
 
-/// A file of the folder by FreeSurfer's name or our own.
+/// A file of the folder, or of a FreeSurfer subject's surf/ in it, by FreeSurfer's name or our own.
 std::optional<fs::path> fileOf(Context& context, const RegionsSettings& s, const std::string& side,
                                const std::string& fsName, const std::string& ours) {
   for (const std::string& name : {(side == "L" ? "lh." : "rh.") + fsName, ours}) {
-    const fs::path path = fs::path(s.folder) / name;
-    if (isThere(path)) return context.input(path, fsName);
+    for (const fs::path& folder : {fs::path(s.folder), fs::path(s.folder) / "surf"}) {
+      if (isThere(folder / name)) return context.input(folder / name, fsName);
+    }
   }
   return {};
 }

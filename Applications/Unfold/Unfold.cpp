@@ -153,7 +153,8 @@ Aim chooseAim(Context& context, const TriangleMesh& mesh, const UnfoldSettings& 
                  " pieces; each unfolds on its own");
   }
   if (aim.region.holes > 0) {
-    context.warn("the region has " + std::to_string(aim.region.holes) + " holes; they stay open");
+    context.warn("the region has " + std::to_string(aim.region.holes) +
+                 (aim.region.holes == 1 ? " hole; it stays open" : " holes; they stay open"));
   }
   return aim;
 }

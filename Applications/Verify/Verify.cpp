@@ -72,8 +72,7 @@ Termination run(Context& context, const VerifySettings& s) {
     throw InvalidInput(record.string() + ": " + std::to_string(wrong) + " of " +
                        std::to_string(verification.files.size()) + " files are not as recorded");
   }
-  context.info("all " + std::to_string(verification.files.size()) + " files of " +
-               std::to_string(verification.records) + " record(s) are as recorded");
+  context.info("all " + std::to_string(verification.files.size()) + " files unchanged");
   return Termination::NotRun;
 }
 

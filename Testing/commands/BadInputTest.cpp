@@ -328,6 +328,17 @@ const Unsuitable kUnsuitable[] = {
      "{folder}/lh.regions.label.gii",
      {"left", "right"},
      writeMapAndRegions},
+    {"RegionsOfAnotherMesh",
+     {},
+     {"regions", "{folder}", "--atlas", "{folder}/lh.regions.label.gii"},
+     "{folder}/lh.regions.label.gii",
+     {"explica resample"},
+     [](const TemporaryFolder& folder) {
+       writeMapAndRegions(folder);
+       io::LabelMap regions{"regions", {}, {{1, "front"}}};
+       regions.keys.setOnes(12);
+       io::writeGiftiLabel(folder / "lh.regions.label.gii", regions, "CortexLeft");
+     }},
     {"FolderWithoutAreas",
      {},
      {"regions", "{folder}/empty", "--atlas", "{folder}/lh.regions.label.gii"},

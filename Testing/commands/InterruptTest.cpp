@@ -20,7 +20,8 @@ TEST_P(Interrupt, WritesAndMarksWhatWasReachedAndResumes) {
                                           "--center",    "0,0,30",
                                           "--radius",    "25",
                                           "--direction", "0,0,1",
-                                          "--out",       folder / "a"};
+                                          "--out",       folder / "a",
+                                          "--verbose"};
   CommandSetting setting;
   setting.signal = GetParam();
   setting.signalWhen = "iteration 2";
@@ -45,7 +46,7 @@ TEST(Interrupts, InflationGoesOnToTheBytesOfARunThatNeverStopped) {
   TemporaryFolder folder;
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0, 0.5, 9));
   const std::vector<std::string> words = {"inflate", folder / "sphere.surf.gii", "--out",
-                                          folder / "a"};
+                                          folder / "a", "--verbose"};
   CommandSetting setting;
   setting.signal = SIGINT;
   setting.signalWhen = "iteration 2";
@@ -67,7 +68,8 @@ TEST(Interrupts, AFlatMapGoesOnToTheBytesOfARunThatNeverStopped) {
   TemporaryFolder folder;
   io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
   const std::vector<std::string> words = {
-      "flatten", folder / "sphere.surf.gii", "--cuts", "auto", "--grid", "2", "--frames", "3"};
+      "flatten",  folder / "sphere.surf.gii", "--cuts", "auto", "--grid", "2", "--frames", "3",
+      "--verbose"};
   const auto whole = explica(words + std::vector<std::string>{"--out", folder / "whole"});
   ASSERT_EQ(whole.exitCode, 0) << whole;
   for (const std::string moment : {"cut 1", "iteration 2 on 10"}) {
@@ -106,7 +108,8 @@ TEST(Interrupts, AComparisonHoldsTheSurfacesThatItHasMeasured) {
   CommandSetting setting;
   setting.signal = SIGINT;
   setting.signalWhen = "second.surf.gii: ";
-  const auto stopped = explica(words + std::vector<std::string>{"--out", folder / "a"}, setting);
+  const auto stopped =
+      explica(words + std::vector<std::string>{"--out", folder / "a", "--verbose"}, setting);
   ASSERT_EQ(stopped.exitCode, 3) << stopped;
   const auto summary = readJson(folder / "a/summary.json");
   EXPECT_EQ(summary["termination"], "interrupted");
@@ -125,9 +128,10 @@ TEST(Interrupts, EverySignalThatAsksForAnEndIsHeard) {
     CommandSetting setting;
     setting.signal = number;
     setting.signalWhen = "iteration 1";
-    const auto stopped = explica({"inflate", folder / "sphere.surf.gii", "--max-iterations", "2000",
-                                  "--target-seen", "1", "--out", folder / "a", "--force"},
-                                 setting);
+    const auto stopped =
+        explica({"inflate", folder / "sphere.surf.gii", "--max-iterations", "2000", "--target-seen",
+                 "1", "--verbose", "--out", folder / "a", "--force"},
+                setting);
     EXPECT_EQ(stopped.exitCode, 3) << number << stopped;
     EXPECT_EQ(readJson(folder / "a/summary.json")["termination"], "interrupted");
   }

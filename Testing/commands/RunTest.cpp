@@ -73,6 +73,37 @@ TEST(Run, GoesFromLabelsToAReport) {
   EXPECT_EQ(page.find("{&quot;"), std::string::npos);
 }
 
+/// Lines of progress: "surface: remeshing: 40 %".
+std::vector<std::string> progressIn(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.ends_with(" %")) lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(Run, ProgressIsALineAStepAndNeverFalls) {
+  TemporaryFolder folder;
+  makePhantom(folder);
+  std::map<std::string, int> linesOf;
+  for (const std::string& line : progressIn(explica(smallRun(folder, "out")).err)) {
+    ++linesOf[line.substr(0, line.find(':'))];
+  }
+  for (const char* step : {"thickness", "surface", "unfold"}) EXPECT_EQ(linesOf[step], 1) << step;
+  // A command on its own says each tenth, each once.
+  const auto alone = explica({"thickness", folder / "phantom/labels.nii.gz", "--inner", "3",
+                              "--tissue", "2", "--out", folder / "alone"});
+  const auto lines = progressIn(alone.err);
+  EXPECT_GE(lines.size(), 3U) << alone;
+  int last = -1;
+  for (const std::string& line : lines) {
+    const int percent = std::stoi(line.substr(line.rfind(": ") + 2));
+    EXPECT_GT(percent, last) << alone;
+    last = percent;
+  }
+}
+
 TEST(Run, ResumesWhatIsStillTrueAndRedoesWhatIsNot) {
   TemporaryFolder folder;
   makePhantom(folder);

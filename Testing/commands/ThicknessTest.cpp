@@ -402,6 +402,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadTissue{"NoInnerLabel", {"--tissue", "2"}, "no inner label was given (--inner)"}),
     [](const auto& row) { return row.param.name; });
 
+/// Trajectories of a block leave the image: grid faces that they meet there are in no memory.
+TEST(ThicknessCommand, ABlockWhoseTrajectoriesLeaveTheImageIsMeasured) {
+  const fs::path block = fs::path(EXPLICA_REAL_DATA) / "laynii_sc/sc_rim.nii.gz";
+  if (!fs::exists(block)) GTEST_SKIP() << "skipped: no real data";
+  TemporaryFolder folder;
+  const auto made =
+      explica({"thickness", block, "--inner", "2", "--tissue", "3", "--out", folder / "out"});
+  EXPECT_EQ(made.exitCode, 0) << made;
+}
+
 TEST(ThicknessCommand, AHoleThroughTheTissueIsAWarningWithItsPlace) {
   TemporaryFolder folder;
   writeLabels(folder / "hole.nii.gz", {36, 36, 36}, Vector::Ones(), [](const Point& x, int) {

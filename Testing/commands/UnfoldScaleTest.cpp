@@ -88,7 +88,7 @@ TEST_F(UnfoldAtFullResolution, InterruptedItResumesToTheBytesOfAnUninterruptedRu
   const TemporaryFolder folder;
   // A goal out of reach: whenever the signal comes, there is work left.
   const auto words =
-      patch() + std::vector<std::string>{"--target-visibility", "1", "--frames", "3"};
+      patch() + std::vector<std::string>{"--target-visibility", "1", "--frames", "3", "--verbose"};
   CommandSetting setting;
   setting.signal = SIGTERM;
   setting.signalWhen = "iteration 3";

@@ -40,8 +40,9 @@ TEST(Regions, ReproducesFreeSurfersTableOfItsOwnSurfaces) {
   if (!fs::exists(bert)) GTEST_SKIP() << "skipped: no real data";
   for (const std::string side : {"lh", "rh"}) {
     TemporaryFolder folder;
+    const fs::path given = side == "lh" ? bert : bert / "surf";  // the subject, or its surfaces
     const auto result =
-        explica({"regions", (bert / "surf").string(), "--atlas",
+        explica({"regions", given.string(), "--atlas",
                  (bert / "label" / (side + ".aparc.annot")).string(), "--out", folder / "out"});
     ASSERT_EQ(result.exitCode, 0) << result;
     const auto ours = statsRows(folder / ("out/" + side + ".aparc.stats"));

@@ -34,6 +34,19 @@ bool isAnotherFile(const std::filesystem::path& path) {
   return !start.empty() && start.substr(0, start.find('\n')).find(kFirstLine) == std::string::npos;
 }
 
+/// How long a step will still take, by how long it took so far; empty at its start.
+std::string timeLeft(double reached, std::chrono::duration<double> taken) {
+  if (reached <= 0) return "";
+  const double seconds = std::ceil(taken.count() * (1 - reached) / reached);
+  char text[32];
+  if (seconds < 100) {
+    std::snprintf(text, sizeof text, ", %.0f s left", seconds);
+  } else {
+    std::snprintf(text, sizeof text, ", %.0f min left", std::ceil(seconds / 60));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string timeNow() {
@@ -108,44 +121,50 @@ void Console::error(const std::string& message) {
   line("error: ", message, true);
 }
 
-void Console::progress(double fraction, std::string_view said) {
+void Console::progress(double fraction, const std::string& step, std::string_view said) {
   if (!std::isfinite(fraction)) return;
-  const std::string activity = provenance::printable(said);
-  fraction = std::clamp(fraction, 0.0, 1.0);
+  const std::string activity = provenance::printable(step + std::string(said));
   const auto now = std::chrono::steady_clock::now();
-  const int tenth = static_cast<int>(fraction * 10);
   std::string text;
+  bool shown = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (step != step_) {
+      step_ = step;
+      stepBegan_ = now;
+      reached_ = 0;
+      lastTenth_ = -1;
+    }
+    reached_ = std::clamp(fraction, reached_, 1.0);
+    const int tenth = static_cast<int>(reached_ * 10);
     const bool newActivity = activity != lastActivity_;
     if (terminal_ && level_ != Level::Quiet) {
       constexpr auto kRedraw = std::chrono::milliseconds(100);  // often enough to be seen to move
-      if (newActivity || now - lastDrawn_ > kRedraw || fraction >= 1.0) {
+      if (newActivity || now - lastDrawn_ > kRedraw || reached_ >= 1.0) {
         constexpr int kWidth = 30;  // characters of the bar
-        const int filled = static_cast<int>(fraction * kWidth);
-        std::fprintf(stderr, "\r\033[K[%s%s] %3d %%  %.*s", std::string(filled, '=').c_str(),
-                     std::string(kWidth - filled, ' ').c_str(), static_cast<int>(fraction * 100),
-                     static_cast<int>(activity.size()), activity.c_str());
+        const int filled = static_cast<int>(reached_ * kWidth);
+        std::fprintf(stderr, "\r\033[K[%s%s] %3d %%%s  %s", std::string(filled, '=').c_str(),
+                     std::string(kWidth - filled, ' ').c_str(), static_cast<int>(reached_ * 100),
+                     timeLeft(reached_, now - stepBegan_).c_str(), activity.c_str());
         std::fflush(stderr);
         barShown_ = true;
         lastDrawn_ = now;
       }
     }
     if (!newActivity && tenth == lastTenth_) return;
+    // A step of a run takes one line; a command on its own one for each tenth.
+    const bool worthALine = step.empty() ? tenth > lastTenth_ : lastTenth_ < 0;
+    shown = !terminal_ && (level_ == Level::Verbose || (level_ == Level::Normal && worthALine));
     lastActivity_ = activity;
     lastTenth_ = tenth;
     text = activity + ": " + std::to_string(tenth * 10) + " %";
   }
-  if (!terminal_) {
-    line("", text, level_ != Level::Quiet);
-  }
+  line("", text, shown);
 }
 
 void Console::endProgress() {
   const std::lock_guard<std::mutex> lock(mutex_);
   clearBar();
-  lastTenth_ = -1;
-  lastActivity_.clear();
 }
 
 void Console::clearBar() {

@@ -6,13 +6,14 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace explica::app {
 
-/// Messages to standard error and to the log file: a progress bar on a terminal, plain lines
-/// elsewhere. May be called from several threads.
+/// Messages to standard error and to the log file: a progress bar with the time left on a
+/// terminal, a line a step elsewhere. May be called from several threads.
 class Console {
  public:
   enum class Level { Quiet, Normal, Verbose };
@@ -30,7 +31,9 @@ class Console {
   void detail(const std::string& message);
   void warning(const std::string& message);
   void error(const std::string& message);
-  void progress(double fraction, std::string_view said);
+  /// @param fraction  share of the step, or of the command; what falls is not shown
+  /// @param step      of a run, as "surface-L: "; empty for a command on its own
+  void progress(double fraction, const std::string& step, std::string_view said);
   void endProgress();
 
  private:
@@ -45,6 +48,9 @@ class Console {
   bool terminal_ = false;
   bool barShown_ = false;
   int lastTenth_ = -1;
+  double reached_ = 0;  ///< the largest share of this step
+  std::optional<std::string> step_;
+  std::chrono::steady_clock::time_point stepBegan_{};
   std::string lastActivity_;
   std::chrono::steady_clock::time_point lastDrawn_{};
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_;

@@ -131,7 +131,7 @@ Monitor monitorOf(Run& run, Console& console, provenance::Record& record, std::m
     }
   };
   monitor.onProgress = [&](double fraction, std::string_view activity) {
-    console.progress(fraction, run.prefix + std::string(activity));
+    console.progress(fraction, run.prefix, activity);
   };
   monitor.stopWanted = [&] {
     return run.parent ? run.parent->shouldStop() : endWanted() || timeIsOver();

@@ -281,12 +281,9 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
   std::vector<Piece> pieces;
   std::vector<Untangling> untangled;
   for (std::size_t n = 0; n < surfaces.size(); ++n) {
-    Monitor part = monitor;
-    part.onProgress = [&](double fraction, std::string_view activity) {
-      monitor.progress((static_cast<double>(n) + fraction) / static_cast<double>(surfaces.size()),
-                       activity);
-    };
-    untangled.push_back(untangle(surfaces[n], options.untangle, part));
+    const auto from = static_cast<double>(n), all = static_cast<double>(surfaces.size());
+    untangled.push_back(
+        untangle(surfaces[n], options.untangle, monitor.part(from / all, (from + 1) / all)));
     TriangleMesh now{untangled.back().positions, surfaces[n].faces};
     MovedGroups groups(topology, surfaces[n].positions, now.positions);
     pieces.push_back({&surfaces[n], std::move(now), std::move(groups)});

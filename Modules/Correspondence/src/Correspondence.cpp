@@ -495,6 +495,7 @@ class Sweep {
     base[axis] = plane;
     base[b] = static_cast<int>(x[b]);
     base[c] = annulus_.planar ? static_cast<int>(std::lround(x[2])) : static_cast<int>(x[c]);
+    if (!inBox(base, axis)) return false;
     const auto fb = static_cast<float>(x[b] - base[b]);
     const auto fc = annulus_.planar ? 0.0F : static_cast<float>(x[c] - base[c]);
     const auto strides = annulus_.strides();
@@ -541,6 +542,16 @@ class Sweep {
     for (int a = 0; a < 3; ++a) sum[a] += static_cast<float>(base[a] - s[a]) * spacing_[a];
     sum[3] += static_cast<float>(length);
     arrivals_[r] = sum;
+    return true;
+  }
+
+  /// Whether the grid face at a voxel lies in the box: a trajectory that leaves the image may meet
+  /// faces beyond it.
+  [[nodiscard]] bool inBox(const std::array<int, 3>& base, int axis) const {
+    for (int a = 0; a < 3; ++a) {
+      const int reach = a == axis || (annulus_.planar && a == 2) ? 0 : 1;
+      if (base[a] < 0 || base[a] + reach >= annulus_.size[a]) return false;
+    }
     return true;
   }
 

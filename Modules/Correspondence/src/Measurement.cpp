@@ -67,9 +67,9 @@ void noteGaps(Measurement& m, const Monitor& monitor) {
   add(m.lost, " whose trajectory ends before a boundary",
       first < 0 ? "" : firstAt(annulus.voxel(first)));
   add(leaving, " whose trajectory leaves the image", "");
-  if (reasons.empty()) return;
-  monitor.warn(std::to_string(m.lost + leaving + dropped) +
-               " voxels of tissue could not be measured" + reasons);
+  const std::size_t all = m.lost + leaving + dropped;
+  if (!harmonic::isWorthAWarning(all, annulus.count())) return;
+  monitor.warn(std::to_string(all) + " voxels of tissue could not be measured" + reasons);
 }
 
 }  // namespace
@@ -94,9 +94,10 @@ Measurement measure(harmonic::Annulus annulus, const MeasurementOptions& options
   m.sulciRecovered = options.sulciMode(folding) == SulciMode::Recover;
   static_cast<Ribbon&>(m) = solveRibbon(
       std::move(annulus), m.sulciRecovered ? std::optional(options.sulcus) : std::nullopt,
-      options.interpolant, monitor, begin);
+      options.interpolant, monitor.part(0, 0.7), begin);
   begin("correspondence");
-  m.correspondence = findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor);
+  m.correspondence =
+      findCorrespondences(m.annulus, m.interpolant, options.correspondence, monitor.part(0.7, 1));
   if (!options.isWall(folding)) {
     const bool flat = m.annulus.planar || m.annulus.grid.dimension() == 2;
     m.nearEdge = nearImageEdge(m.annulus, {true, true, !flat}, m.correspondence);
@@ -178,7 +179,7 @@ void describe(Results& t, const Measurement& m) {
   const double tissue =
       static_cast<double>(m.annulus.count()) * (m.annulus.planar ? h[0] * h[1] : h.prod());
   t.number("grid_coverage", "Volume of the grid over that of the tissue", "",
-           "Cells between trajectories that do not reach both boundaries are missing.",
+           "Cells where thickness could not be measured are missing.",
            m.grid ? std::optional(m.grid->volume / tissue) : std::nullopt);
 }
 

@@ -13,12 +13,13 @@ Ribbon solveRibbon(harmonic::Annulus annulus, const std::optional<SulcusOptions>
   ribbon.annulus = std::move(annulus);
   if (sulcus) {
     if (onPart) onPart("sulci");
-    SulcalRecovery recovered = recoverSulci(std::move(ribbon.annulus), *sulcus, monitor);
+    SulcalRecovery recovered =
+        recoverSulci(std::move(ribbon.annulus), *sulcus, monitor.part(0, 0.2));
     ribbon.annulus = std::move(recovered.annulus);
     ribbon.sulcalVoxels = std::move(recovered.voxels);
   }
   if (onPart) onPart("harmonic");
-  ribbon.interpolant = harmonic::solveInterpolant(ribbon.annulus, options, monitor);
+  ribbon.interpolant = harmonic::solveInterpolant(ribbon.annulus, options, monitor.part(0.2, 1));
   return ribbon;
 }
 

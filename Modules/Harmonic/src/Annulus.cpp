@@ -345,7 +345,7 @@ void noteContacts(Annulus& annulus, const std::vector<Code>& sites, const Monito
     if (annulus.holes++ == 0) largest = voxelText(voxelAt(annulus, first));
     faces += count;
   }
-  if (annulus.holes == 0) return;
+  if (!isWorthAWarning(faces, contacts.boundary)) return;
   monitor.warn("the tissue has " + std::to_string(annulus.holes) +
                (annulus.holes == 1 ? " hole: " : " holes: ") + kTouches + std::to_string(faces) +
                " voxel face" + (faces == 1 ? "" : "s") + ", " +

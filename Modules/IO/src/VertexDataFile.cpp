@@ -43,7 +43,9 @@ void checkCount(const std::filesystem::path& path, Eigen::Index found,
                 std::optional<Eigen::Index> wanted) {
   if (wanted && found != *wanted) {
     refuse(path, "holds " + std::to_string(found) + " values, but the surface has " +
-                     std::to_string(*wanted) + " vertices: do they belong together?");
+                     std::to_string(*wanted) +
+                     " vertices: it belongs to another surface; give that one, or bring it "
+                     "over with explica resample");
   }
 }
 

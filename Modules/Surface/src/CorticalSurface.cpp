@@ -44,18 +44,6 @@
 namespace explica::surface {
 namespace {
 
-/// Maps a part's progress to a stretch of the whole's.
-Monitor partOf(const Monitor& monitor, double from, double to) {
-  Monitor part = monitor;
-  if (monitor.onProgress) {
-    part.onProgress = [report = monitor.onProgress, from, to](double fraction,
-                                                              std::string_view activity) {
-      report(from + (to - from) * fraction, activity);
-    };
-  }
-  return part;
-}
-
 /// Time since the last look, s.
 class Stopwatch {
  public:
@@ -441,7 +429,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   requirePrecision(tissue.white.grid);
   WhiteSurface white;
   Stopwatch watch;
-  TopologyResult topology = correctTopology(tissue.white, options.genus, partOf(monitor, 0, 0.1));
+  TopologyResult topology = correctTopology(tissue.white, options.genus, monitor.part(0, 0.1));
   white.level = std::move(topology.level);
   white.defects = std::move(topology.defects);
   white.voxelsChanged = topology.voxelsChanged;
@@ -451,7 +439,7 @@ WhiteSurface extractWhite(const CorticalTissue& tissue, const SurfaceOptions& op
   white.seconds.extraction = watch.lap();
   RemeshOptions remeshing;
   remeshing.faces = options.faces;
-  RemeshResult result = remesh(raw, white.level, remeshing, partOf(monitor, 0.1, 1));
+  RemeshResult result = remesh(raw, white.level, remeshing, monitor.part(0.1, 1));
   white.seconds.remeshing = watch.lap();
   white.mesh = std::move(result.mesh);
   white.edgeLength = result.edgeLength;
@@ -491,14 +479,14 @@ CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
   const bool isSearched = images != nullptr && given.byBrightness;
   const CorticalTissue tissue = isSearched ? withCortexAllAround(given) : given;
   CorticalSurfaces result;
-  result.white = extractWhite(tissue, options, partOf(monitor, 0, 0.5));
+  result.white = extractWhite(tissue, options, monitor.part(0, 0.5));
   result.seconds = result.white.seconds;
   Stopwatch watch;
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
   if (images != nullptr) {
     const correspondence::Ribbon ofLabels =
-        solve(annulusOf(ribbon.tissue, silent(monitor)), partOf(monitor, 0.5, 0.6));
+        solve(annulusOf(ribbon.tissue, silent(monitor)), monitor.part(0.5, 0.6));
     takePaths(result.white.mesh, RibbonPaths(ofLabels), ribbon);
     placeByImage(*images, options.fluid, ribbon, result);
     result.seconds.image = watch.lap();
@@ -510,14 +498,14 @@ CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
   const correspondence::Ribbon first =
       solve(byMesh ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
                    : annulusOf(ribbon.tissue, silent(monitor)),
-            partOf(monitor, 0.6, 0.7));
+            monitor.part(0.6, 0.7));
   result.cutLinks = static_cast<std::int64_t>(first.sulcalVoxels.size());
   result.seconds.interpolant = watch.lap();
   const RibbonPaths trajectories(first);
   takePaths(result.white.mesh, trajectories, ribbon);
   result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
-  growSurfaces(ribbon, trajectories, result, partOf(monitor, 0.7, 0.96));
+  growSurfaces(ribbon, trajectories, result, monitor.part(0.7, 0.96));
   // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
   // better than a mesh.
   std::optional<correspondence::Ribbon> between;

@@ -114,8 +114,8 @@ void sayWhatIsShort(const UnfoldOptions& options, const IterationRecord& kept, d
         printed("the visibility is %.4f, %.4f short of its goal of %g%s", kept.visibility,
                 goal - kept.visibility, goal,
                 options.unfolder.surround == Surround::Fixed
-                    ? ": fixed surroundings leave the region no room; with --surround elastic a "
-                      "collar follows, and it opens further"
+                    ? ": fixed surroundings leave the region no room; with --surround elastic the "
+                      "surrounding surface stretches with it, and it opens further"
                     : ""));
   }
   const double toSee = std::min(goal, kGoalSeen);

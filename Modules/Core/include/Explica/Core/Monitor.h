@@ -24,6 +24,14 @@ struct Monitor {
     if (onWarning) onWarning(message);
   }
   [[nodiscard]] bool shouldStop() const { return stopWanted && stopWanted(); }
+  /// For a part of the work, whose progress counts from one share of the whole to another.
+  [[nodiscard]] Monitor part(double from, double to) const {
+    Monitor inner = *this;
+    inner.onProgress = [this, from, to](double fraction, std::string_view activity) {
+      progress(from + (to - from) * fraction, activity);
+    };
+    return inner;
+  }
 };
 
 }  // namespace explica
