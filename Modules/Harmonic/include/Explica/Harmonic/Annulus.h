@@ -110,13 +110,13 @@ struct Annulus {
   }
 };
 
-/// "(1, 2, 3)"
-/// Whether something at some of all places is to be said: a thousandth has it in every good
-/// subject.
+/// Whether something at some of all places is to be said: in every good subject a thousandth has
+/// it.
 [[nodiscard]] constexpr bool isWorthAWarning(std::size_t some, std::size_t all) {
   return 1000 * some > all;
 }
 
+/// "(1, 2, 3)"
 [[nodiscard]] std::string voxelText(const std::array<int, 3>& voxel);
 
 /// Tissue voxels in the outermost layer of the image, along axes with more than one voxel; of
