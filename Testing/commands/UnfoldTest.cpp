@@ -833,7 +833,7 @@ TEST_P(UnfoldRegion, IsSelectedReportedAndUnfolded) {
     EXPECT_GT(summary["visibility_final"], summary["visibility_initial"]) << surround;
     EXPECT_EQ(summary["self_intersections_final"], 0) << surround;
     EXPECT_EQ(result.err.find("pieces") != std::string::npos, GetParam().pieces > 1);
-    EXPECT_EQ(result.err.find("holes") != std::string::npos, GetParam().holes > 0);
+    EXPECT_EQ(result.err.find("hole") != std::string::npos, GetParam().holes > 0);
     const auto before = io::readVertexLabels(folder / (surround + "/region.label.gii"), 441);
     EXPECT_EQ((before.keys.array() == 1).count(), summary["region_vertices"]);
   }
