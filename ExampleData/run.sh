@@ -18,9 +18,9 @@ explica_run() {
 }
 # The default template is Colin27, too: its surfaces and spheres serve as the template, and are not made twice.
 explica_run --steps segment,surface,sphere || status=$?
-if [ "${status:-0}" = 0 ]; then
-  explica_run --template "$out" "$@" || status=$?
-fi
+case ${status:-0} in
+  0 | 3) status=0 && { explica_run --template "$out" "$@" || status=$?; } ;;
+esac
 # 3: stopped before its goal, with results.
 if [ "${status:-0}" != 0 ] && [ "${status:-0}" != 3 ]; then
   exit "$status"
