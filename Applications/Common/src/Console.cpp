@@ -124,42 +124,42 @@ void Console::error(const std::string& message) {
 void Console::progress(double fraction, const std::string& step, std::string_view said) {
   if (!std::isfinite(fraction)) return;
   const std::string activity = provenance::printable(step + std::string(said));
-  const auto now = std::chrono::steady_clock::now();
-  std::string text;
   bool shown = false;
+  int tenth = 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (step != step_) {
       step_ = step;
-      stepBegan_ = now;
+      stepBegan_ = Clock::now();
       reached_ = 0;
       lastTenth_ = -1;
     }
     reached_ = std::clamp(fraction, reached_, 1.0);
-    const int tenth = static_cast<int>(reached_ * 10);
-    const bool newActivity = activity != lastActivity_;
-    if (terminal_ && level_ != Level::Quiet) {
-      constexpr auto kRedraw = std::chrono::milliseconds(100);  // often enough to be seen to move
-      if (newActivity || now - lastDrawn_ > kRedraw || reached_ >= 1.0) {
-        constexpr int kWidth = 30;  // characters of the bar
-        const int filled = static_cast<int>(reached_ * kWidth);
-        std::fprintf(stderr, "\r\033[K[%s%s] %3d %%%s  %s", std::string(filled, '=').c_str(),
-                     std::string(kWidth - filled, ' ').c_str(), static_cast<int>(reached_ * 100),
-                     timeLeft(reached_, now - stepBegan_).c_str(), activity.c_str());
-        std::fflush(stderr);
-        barShown_ = true;
-        lastDrawn_ = now;
-      }
-    }
-    if (!newActivity && tenth == lastTenth_) return;
+    tenth = static_cast<int>(reached_ * 10);
+    if (terminal_ && level_ != Level::Quiet) drawBar(activity);
+    if (activity == lastActivity_ && tenth == lastTenth_) return;
     // A step of a run takes one line; a command on its own one for each tenth.
     const bool worthALine = step.empty() ? tenth > lastTenth_ : lastTenth_ < 0;
     shown = !terminal_ && (level_ == Level::Verbose || (level_ == Level::Normal && worthALine));
     lastActivity_ = activity;
     lastTenth_ = tenth;
-    text = activity + ": " + std::to_string(tenth * 10) + " %";
   }
-  line("", text, shown);
+  line("", activity + ": " + std::to_string(tenth * 10) + " %", shown);
+}
+
+void Console::drawBar(const std::string& activity) {
+  constexpr auto kRedraw = std::chrono::milliseconds(100);  // often enough to be seen to move
+  const auto now = Clock::now();
+  if (activity == lastActivity_ && now - lastDrawn_ <= kRedraw && reached_ < 1) return;
+  constexpr int kWidth = 30;  // characters
+  const auto filled = static_cast<std::size_t>(reached_ * kWidth);
+  std::string bar(filled, '=');
+  bar.resize(kWidth, ' ');
+  std::fprintf(stderr, "\r\033[K[%s] %3d %%%s  %s", bar.c_str(), static_cast<int>(reached_ * 100),
+               timeLeft(reached_, now - stepBegan_).c_str(), activity.c_str());
+  std::fflush(stderr);
+  barShown_ = true;
+  lastDrawn_ = now;
 }
 
 void Console::endProgress() {

@@ -37,7 +37,10 @@ class Console {
   void endProgress();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void line(std::string_view kind, const std::string& message, bool shown);
+  void drawBar(const std::string& activity);
   void clearBar();
   void noteLoss(int written, const std::string& where);
 
@@ -50,9 +53,9 @@ class Console {
   int lastTenth_ = -1;
   double reached_ = 0;  ///< the largest share of this step
   std::optional<std::string> step_;
-  std::chrono::steady_clock::time_point stepBegan_{};
+  Clock::time_point stepBegan_{};
   std::string lastActivity_;
-  std::chrono::steady_clock::time_point lastDrawn_{};
+  Clock::time_point lastDrawn_{};
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_;
 };
 

@@ -8,6 +8,8 @@
 #include "Explica/Geometry/Predicates.h"
 #include "StarRelaxation.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -358,17 +360,21 @@ std::vector<Plane> kernelOf(const std::vector<Plane>& ring) {
 }
 
 /// A place from which the ring is seen where the kernel is too thin for its corners to be computed:
-/// beside the vertex that the removed one merged with.  The faces that join this one to the ring
-/// are positive, so that the exact test finds a place on the way to any vertex across, near enough.
+/// beside the vertex that the removed one merged with, along the bisector of the angle that the
+/// ring has there.  The faces that join that vertex to the ring are positive, so near enough the
+/// ring is seen, though the angle may be of more than 180 degrees.
 std::optional<Plane> placeBeside(const std::vector<Plane>& ring, bool open, std::size_t centre) {
-  const std::size_t size = ring.size();
   const Plane& from = ring[centre];
-  const Plane to = open        ? ring[size - 1 - centre]
-                   : size == 3 ? Plane((ring[0] + ring[1] + ring[2]) / 3)
-                               : ring[(centre + size / 2) % size];
+  const auto wayTo = [&](std::size_t n) { return Plane(ring[(centre + n) % ring.size()] - from); };
+  double angle = 0;
+  for (std::size_t n = 1; n + 1 < ring.size(); ++n) {
+    const Plane a = wayTo(n), b = wayTo(n + 1);
+    angle += std::atan2(cross(a, b), a.dot(b));
+  }
+  const Plane way = Eigen::Rotation2Dd(angle / 2) * wayTo(1);
   double share = 0.5;
   for (int n = 0; n < kHalvings; ++n, share /= 2) {
-    const Plane tried = from + share * (to - from);
+    const Plane tried = from + share * way;
     if (seesRing(ring, open, tried)) return tried;
   }
   return {};

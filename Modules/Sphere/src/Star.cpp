@@ -61,13 +61,22 @@ Vector middleOf(std::vector<Vector> cone) {
   return area > 0 ? Vector(mean + sum / (3 * area)) : mean;
 }
 
-/// Between the first neighbour, beside which the ring is seen, and those across.
+/// Beside the first neighbour, along the bisector of the angle that the ring has there.  The faces
+/// that join it to the ring are positive, so near enough the ring is seen, though the angle may be
+/// of more than 180 degrees.
 std::optional<Point> placeBeside(const Ring& ring) {
-  const Point to =
-      ring.size() == 3 ? Point((ring[0] + ring[1] + ring[2]) / 3) : ring[ring.size() / 2];
+  const Point& from = ring.front();
+  const auto along = [&](const Point& p) -> Vector { return p - from.dot(p) * from; };
+  double angle = 0;
+  for (std::size_t n = 1; n + 1 < ring.size(); ++n) {
+    const Vector a = along(ring[n]), b = along(ring[n + 1]);
+    angle += std::atan2(from.dot(a.cross(b)), a.dot(b));
+  }
+  const Vector first = along(ring[1]);
+  const Vector way = std::cos(angle / 2) * first + std::sin(angle / 2) * from.cross(first);
   double share = 0.5;
   for (int n = 0; n < flattening::kHalvings; ++n, share /= 2) {
-    const Point tried = (ring[0] + share * (to - ring[0])).normalized();
+    const Point tried = (from + share * way).normalized();
     if (seesRing(ring, tried)) return tried;
   }
   return {};

@@ -27,9 +27,12 @@ struct Monitor {
   /// For a part of the work, whose progress counts from one share of the whole to another.
   [[nodiscard]] Monitor part(double from, double to) const {
     Monitor inner = *this;
-    inner.onProgress = [this, from, to](double fraction, std::string_view activity) {
-      progress(from + (to - from) * fraction, activity);
-    };
+    if (onProgress) {
+      inner.onProgress = [outer = onProgress, from, to](double fraction,
+                                                        std::string_view activity) {
+        outer(from + (to - from) * fraction, activity);
+      };
+    }
     return inner;
   }
 };
