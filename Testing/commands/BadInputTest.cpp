@@ -315,6 +315,15 @@ const Unsuitable kUnsuitable[] = {
      "{folder}/lh.regions.label.gii",
      {"642", "1284"},
      writeMapAndRegions},
+    {"FolderWhereASphereIsNeeded",
+     {},
+     {"register", "{folder}/maps", "--template", "fsaverage"},
+     "{folder}/maps",
+     {"is a folder", "maps/white.surf.gii"},
+     [](const TemporaryFolder& folder) {
+       std::filesystem::create_directory(folder / "maps");
+       writeText(folder / "maps/white.surf.gii", "-");
+     }},
     {"NeitherTargetNorFile",
      {},
      {"resample", "{folder}/thickness.shape.gii", "--from", "{folder}/white.surf.gii", "--to",

@@ -33,6 +33,16 @@ bool isTime(const std::string& key) {
   return key.rfind("seconds", 0) == 0;
 }
 
+/// ", such as FILE" by a file of that kind in the folder; empty if there is none.
+std::string exampleIn(const fs::path& folder, FileKind kind) {
+  const std::string ending = kind == FileKind::Surface       ? ".surf.gii"
+                             : kind == FileKind::VertexData  ? ".shape.gii"
+                             : kind == FileKind::VertexLabel ? ".label.gii"
+                                                             : ".nii.gz";
+  const auto found = entriesOf(folder, [&](const auto& name) { return name.ends_with(ending); });
+  return found.empty() ? "" : ", such as " + found.front().string();
+}
+
 /// Hashes every file that a declared input names, so that a missing one is reported before any
 /// work.
 void noteDeclaredInputs(Context& context, const Declaration& declaration) {
@@ -48,6 +58,9 @@ void noteDeclaredInputs(Context& context, const Declaration& declaration) {
       if (*parameter.file == FileKind::Folder) {
         throw IOError(path +
                       (isThere(path) ? ": is a file; a folder is needed" : ": no such folder"));
+      }
+      if (isFolder(path)) {
+        throw IOError(path + ": is a folder; a file is needed" + exampleIn(path, *parameter.file));
       }
       context.input(path, parameter.option.name);
     }
