@@ -4,6 +4,7 @@
 #include "Observations.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Folders.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/StatedHemisphere.h"
@@ -63,17 +64,25 @@ MapFiles filesOf(const Table& list, const std::vector<std::size_t>& rows) {
   return files;
 }
 
+/// The map of a file: the only one, or that with the name of the model's response.
+io::VertexMap mapIn(const fs::path& file, Eigen::Index vertices, const std::string& response) {
+  auto maps = io::readVertexMaps(file, vertices);
+  if (maps.size() == 1) return std::move(maps.front());
+  const auto named = std::ranges::find(maps, response, &io::VertexMap::name);
+  if (named != maps.end()) return std::move(*named);
+  std::string names;
+  for (const io::VertexMap& map : maps) names += (names.empty() ? "" : ", ") + map.name;
+  throw InvalidInput("'" + file.string() + "': holds " + std::to_string(maps.size()) + " maps (" +
+                     names + "); --model says by its left side which is meant");
+}
+
 /// Reads one person's maps one after the other.
 void readMaps(const std::vector<fs::path>& files, const std::vector<Hemisphere>& hemispheres,
-              const std::vector<bool>& mask, std::span<double> values) {
+              const std::string& response, const std::vector<bool>& mask,
+              std::span<double> values) {
   for (std::size_t h = 0; h < hemispheres.size(); ++h) {
-    const auto maps = io::readVertexMaps(files[h], hemispheres[h].count);
-    if (maps.size() != 1) {
-      throw InvalidInput("'" + files[h].string() + "': holds " + std::to_string(maps.size()) +
-                         " maps; one a person is needed");
-    }
-    std::copy(maps.front().values.begin(), maps.front().values.end(),
-              values.begin() + hemispheres[h].first);
+    const io::VertexMap map = mapIn(files[h], hemispheres[h].count, response);
+    std::copy(map.values.begin(), map.values.end(), values.begin() + hemispheres[h].first);
   }
   for (std::size_t v = 0; v < values.size(); ++v) {
     if (!mask[v]) values[v] = kNaN;
@@ -192,6 +201,14 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
     throw InvalidInput("'" + table.name +
                        "': no column holds what is to be analysed; name some with --columns");
   }
+  const fs::path folder = fs::path(table.name).parent_path();
+  for (const std::size_t c : columns) {
+    if (!statistics::isNumeric(table, c) && isThere(folder / table.rows.front()[c])) {
+      throw InvalidInput("'" + table.name + "': the column '" + table.columns[c] +
+                         "' names files; a list of maps has a column file, or columns left and "
+                         "right");
+    }
+  }
   return columns;
 }
 
@@ -250,9 +267,10 @@ void observeMaps(Context& context, const GlmSettings& s, const Table& list, Obse
   layOut(context, s, list, files, o);
   readMask(s, o);
   readAtlases(s, o);
-  o.reader = [files, hemispheres = o.hemispheres, mask = o.mask](std::size_t person,
-                                                                 std::span<double> values) {
-    readMaps(files[person], hemispheres, mask, values);
+  o.reader = [files, hemispheres = o.hemispheres, mask = o.mask,
+              response = statistics::parseFormula(s.model).response](std::size_t person,
+                                                                     std::span<double> values) {
+    readMaps(files[person], hemispheres, response, mask, values);
   };
 }
 

@@ -213,6 +213,34 @@ TEST(Glm, NamesPeopleOfOneListOnlyAndMapsOfOtherSizes) {
   EXPECT_NE(wrong.err.find("sub-4.shape.gii"), std::string::npos) << wrong;
 }
 
+// As explica run leaves them: thickness along trajectories, and to the nearest point.
+TEST(Glm, TakesOfAFileThatHoldsSeveralMapsTheOneOfTheModel) {
+  TemporaryFolder folder;
+  writePeoplesMaps(folder);
+  const auto run = [&](const std::string& list, const std::string& model, const std::string& out) {
+    return explica({"glm", folder / list, "--table", folder / "people.tsv", "--model", model,
+                    "--out", folder / out});
+  };
+  ASSERT_EQ(run("maps.tsv", "thickness ~ age", "one").exitCode, 0);
+  for (int person = 0; person < 10; ++person) {
+    const std::string file = folder / ("sub-" + std::to_string(person) + ".shape.gii");
+    const auto one = io::readVertexMaps(file).front();
+    io::writeGiftiShape(file, {{"nearest", "mm", 0.9 * one.values}, one}, "CortexLeft");
+  }
+  ASSERT_EQ(run("maps.tsv", "thickness ~ age", "two").exitCode, 0);
+  EXPECT_EQ(readText(folder / "two/age_effect.shape.gii"),
+            readText(folder / "one/age_effect.shape.gii"));
+  const auto unclear = run("maps.tsv", "~ age", "out");
+  EXPECT_EQ(unclear.exitCode, 2);
+  EXPECT_NE(unclear.err.find("2 maps (nearest, thickness); --model"), std::string::npos) << unclear;
+
+  std::string list = readText(folder / "maps.tsv");
+  writeText(folder / "named.tsv", list.replace(list.find("file"), 4, "thickness"));
+  const auto named = run("named.tsv", "thickness ~ age", "out");
+  EXPECT_EQ(named.exitCode, 2);
+  EXPECT_NE(named.err.find("the column 'thickness' names files"), std::string::npos) << named;
+}
+
 /// Maps of forty people, smooth noise of 0.12 mm; 0.3 mm less within a cap in twenty of them.
 TEST(Glm, FindsALesionWhereItIs) {
   TemporaryFolder folder;
