@@ -27,6 +27,9 @@ constexpr double kCortexAround = 0.6;  // measured: white matter from 0.74, fat 
 constexpr double kDeepestCortex = 4;  // mm to its outside: deeper is hardly any [von Economo 1925]
 constexpr double kRimReach = 8;       // mm: farther the atlas does not err
 
+// Muscle, dura and sinuses at the base of the skull are as bright as cortex.
+constexpr double kFarthestCortex = 6;  // mm from white matter: of label maps 0.2 % lie beyond
+
 // Ventricles of a template.
 constexpr double kFluidOverCortex = 0.7;  // of the brightness of cortical labels: darker is fluid
 constexpr double kDeepShare = 0.12;  // of the brain's radius, 8 mm in an adult: sulci open nearer
@@ -543,8 +546,13 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
     result.strayVoxels += hanging + keepLargest(draft.white, componentsOf(draft.white));
   }
   result.cavityVoxels = fillCavities(draft);
+  const Volume<float> toWhite = squaredDistanceTo(draft.white);
   draft.tissue = setWhere(grid, [&](std::size_t v) {
-    return draft.white[v] != 0 || (draft.own[v] != 0 && (seg[v] == kGrey || seg[v] == kWhite));
+    if (draft.white[v] != 0) return true;
+    if (draft.own[v] == 0 || (seg[v] != kGrey && seg[v] != kWhite)) return false;
+    const bool isNear = toWhite[v] <= kFarthestCortex * kFarthestCortex;
+    result.strayVoxels += isNear ? 0 : 1;
+    return isNear;
   });
   result.strayVoxels += keepLargest(draft.tissue, componentsOf(draft.tissue));
 

@@ -58,7 +58,8 @@ void describeHemisphere(Results& t, const std::string& side, const std::string& 
   count("deep_voxels_filled", "Deep grey voxels filled", "", &HemisphereCounts::deep);
   count("ventricle_voxels_filled", "Ventricle's voxels filled", "", &HemisphereCounts::ventricle);
   count("cavity_voxels_filled", "Other enclosed voxels filled", "", &HemisphereCounts::cavity);
-  count("stray_voxels_dropped", "Voxels left out", "Not connected to the hemisphere.",
+  count("stray_voxels_dropped", "Voxels left out",
+        "Not connected to the hemisphere, or farther from its white matter than cortex is thick.",
         &HemisphereCounts::stray);
 }
 

@@ -246,6 +246,40 @@ TEST(Hemisphere, LeavesOutWhatHangsByAThreadWithoutCortexAboutIt) {
   EXPECT_NEAR(kept - static_cast<double>(whiteWith(0)), ball, 0.1 * ball);  // with the thread
 }
 
+// Muscle below the temporal lobe: as bright as cortex, joined to it, and reached by no white
+// matter.
+TEST(Hemisphere, LeavesOutGreyThatIsFarFromWhiteMatter) {
+  for (const double slice : {1.0, 2.0}) {
+    HeadPhantom p = makeHeadPhantom(false);
+    p.tissue.labels.grid.spacing.z() = p.atlas.grid.spacing.z() = slice;
+    for (auto& q : p.tissue.probability) q.grid = p.atlas.grid;
+    const auto before = extractHemisphere(p.tissue, p.atlas, p.legend);
+    const Volume<Label> cortex = p.tissue.labels;
+    // A plate beside the hemisphere from 2 to 30 mm off its white matter.
+    for (std::size_t v = 0; v < p.atlas.size(); ++v) {
+      const auto [i, j, k] = p.atlas.grid.subscripts(v);
+      if (i > 30 || j < 25 || j > 34 || k < 28 || k > 32 || p.tissue.labels[v] != 0) continue;
+      p.tissue.labels[v] = kGrey;
+      p.tissue.probability[1][v] = 1;
+    }
+    const Hemisphere left = extractHemisphere(p.tissue, p.atlas, p.legend);
+    std::int64_t kept = 0;
+    for (std::size_t v = 0; v < cortex.size(); ++v) {
+      if (cortex[v] != 0) {
+        ASSERT_EQ(left.labels[v], before.labels[v]);
+        continue;
+      }
+      if (left.labels[v] != kGrey) continue;
+      ++kept;
+      const auto [i, j, k] = p.atlas.grid.subscripts(v);
+      const Vector w = Vector(i - 34.5, j - 30, k - 30);
+      EXPECT_LT(w.norm(), 22 + 6 + 1) << slice;
+    }
+    EXPECT_GT(kept, 0);
+    EXPECT_GT(left.strayVoxels, 100) << slice;
+  }
+}
+
 TEST(Hemisphere, LeftAndRightShareNoVoxel) {
   const HeadPhantom p = makeHeadPhantom(false);
   HemisphereOptions options;
