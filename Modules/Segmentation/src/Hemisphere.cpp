@@ -449,6 +449,18 @@ std::int64_t fillCavities(Draft& draft) {
   return count;
 }
 
+/// Takes off tissue that is farther from white matter than cortex is thick; how many voxels.
+std::int64_t dropFarFromWhite(Draft& draft) {
+  const Volume<float> toWhite = squaredDistanceTo(draft.white);
+  std::int64_t count = 0;
+  for (std::size_t v = 0; v < toWhite.size(); ++v) {
+    if (draft.tissue[v] == 0 || toWhite[v] <= kFarthestCortex * kFarthestCortex) continue;
+    draft.tissue[v] = 0;
+    ++count;
+  }
+  return count;
+}
+
 /// Labels and shares of tissue from the finished draft; `cut` are voxels where the hemisphere was
 /// cut off from the rest.
 void label(const TissueSegmentation& tissue, const Draft& draft, const VoxelSet& cut,
@@ -546,14 +558,10 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
     result.strayVoxels += hanging + keepLargest(draft.white, componentsOf(draft.white));
   }
   result.cavityVoxels = fillCavities(draft);
-  const Volume<float> toWhite = squaredDistanceTo(draft.white);
   draft.tissue = setWhere(grid, [&](std::size_t v) {
-    if (draft.white[v] != 0) return true;
-    if (draft.own[v] == 0 || (seg[v] != kGrey && seg[v] != kWhite)) return false;
-    const bool isNear = toWhite[v] <= kFarthestCortex * kFarthestCortex;
-    result.strayVoxels += isNear ? 0 : 1;
-    return isNear;
+    return draft.white[v] != 0 || (draft.own[v] != 0 && (seg[v] == kGrey || seg[v] == kWhite));
   });
+  result.strayVoxels += dropFarFromWhite(draft);
   result.strayVoxels += keepLargest(draft.tissue, componentsOf(draft.tissue));
 
   label(tissue, draft,

@@ -39,7 +39,7 @@ struct Hemisphere {
   std::int64_t deepVoxels = 0;       ///< of deep structures, filled into the white matter
   std::int64_t ventricleVoxels = 0;  ///< enclosed fluid and its rim, filled
   std::int64_t cavityVoxels = 0;     ///< other enclosed voxels, filled
-  std::int64_t strayVoxels = 0;      ///< tissue not connected to the hemisphere, dropped
+  std::int64_t strayVoxels = 0;      ///< not connected, or far from white matter; dropped
 };
 
 /// White matter and grey ribbon of one hemisphere, by an atlas in the image's space.
