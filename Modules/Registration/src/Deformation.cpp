@@ -90,17 +90,23 @@ FieldLevel coarser(const FieldLevel& fine, double factor) {
   return level;
 }
 
-/// The volume at each voxel's displaced place.
-Volume<float> displaced(const Volume<float>& volume, const Field& u) {
-  Volume<float> result(volume.grid);
-  const Grid& grid = volume.grid;
+/// The volumes at each voxel's displaced place.
+template <std::size_t Count>
+std::array<Volume<float>, Count> displaced(const std::array<const Volume<float>*, Count>& volumes,
+                                           const Field& u) {
+  const Grid& grid = u[0].grid;
+  std::array<Volume<float>, Count> result;
+  for (Volume<float>& one : result) one = Volume<float>(grid);
   forLattice(grid, [&](int i, int j, int k) {
     const std::size_t v = grid.linear(i, j, k);
-    Vector at(i + u[0][v], j + u[1][v], k + u[2][v]);
-    for (int a = 0; a < 3; ++a) at[a] = std::clamp(at[a], 0.0, grid.size[a] - 1.0);
-    result[v] = valueAt(volume, at);
+    const Cell cell(grid, Vector(i + u[0][v], j + u[1][v], k + u[2][v]));
+    for (std::size_t c = 0; c < Count; ++c) result[c][v] = cell.of(*volumes[c]);
   });
   return result;
+}
+
+Volume<float> displaced(const Volume<float>& volume, const Field& u) {
+  return std::move(displaced(std::array{&volume}, u)[0]);
 }
 
 /// Squared correlation in windows, and its derivative by the middle's moving value.
@@ -195,9 +201,8 @@ Field composed(const Field& u, Field v, double step, double width) {
   for (auto& component : v) {
     forVoxels(component.size(), [&](std::size_t n) { component[n] *= static_cast<float>(step); });
   }
-  Field result;
+  Field result = displaced(std::array{&u[0], &u[1], &u[2]}, v);
   for (int a = 0; a < 3; ++a) {
-    result[a] = displaced(u[a], v);
     forVoxels(result[a].size(), [&](std::size_t n) { result[a][n] += v[a][n]; });
     result[a] = smoothed(std::move(result[a]), width * u[a].grid.spacing[0]);
   }

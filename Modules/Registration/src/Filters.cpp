@@ -5,28 +5,43 @@
 #include "Explica/Core/GridLines.h"
 #include "Explica/Core/Parallel.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 namespace explica::registration {
 namespace {
 
+constexpr int kLanes = 16;  // lines that are filtered at once
+using Lanes = Eigen::Array<float, kLanes, 1>;
+/// Lines beside each other, a row each.
+using Bundle = Eigen::Array<float, kLanes, Eigen::Dynamic>;
+
 /// Replaces each line of the volume by what `filter` makes of it.
 /// @param margin  values before and after the line that the filter is given: those at its ends
+/// @param filter  (in, out): what is in `out` on entry does not matter
 template <class Filter>
 void filterLines(Volume<float>& volume, int axis, int margin, const Filter& filter) {
   const GridLines lines(volume.grid.size, axis);
-  parallelForBlocks(lines.count, 512, [&](std::size_t first, std::size_t last) {
-    std::vector<float> in(static_cast<std::size_t>(lines.length + 2 * margin));
-    std::vector<float> out(static_cast<std::size_t>(lines.length));
-    for (std::size_t l = first; l < last; ++l) {
-      float* start = volume.data.data() + lines.begin(l);
-      for (int s = 0; s < lines.length; ++s) in[margin + s] = start[s * lines.stride];
-      std::fill_n(in.begin(), margin, start[0]);
-      std::fill_n(in.end() - margin, margin, start[(lines.length - 1) * lines.stride]);
+  parallelForBlocks((lines.count + kLanes - 1) / kLanes, 32, [&](std::size_t from, std::size_t to) {
+    Bundle in(kLanes, lines.length + 2 * margin), out(kLanes, lines.length);
+    for (std::size_t bundle = from; bundle < to; ++bundle) {
+      std::array<float*, kLanes> start;  // spare lanes of the last bundle repeat its last line
+      for (int l = 0; l < kLanes; ++l) {
+        const std::size_t line = std::min(bundle * kLanes + l, lines.count - 1);
+        start[l] = volume.data.data() + lines.begin(line);
+      }
+      for (int s = -margin; s < lines.length + margin; ++s) {
+        const std::size_t at = std::clamp(s, 0, lines.length - 1) * lines.stride;
+        for (int l = 0; l < kLanes; ++l) in(l, s + margin) = start[l][at];
+      }
       filter(in, out);
-      for (int s = 0; s < lines.length; ++s) start[s * lines.stride] = out[s];
+      for (int s = 0; s < lines.length; ++s) {
+        for (int l = 0; l < kLanes; ++l) start[l][s * lines.stride] = out(l, s);
+      }
     }
   });
 }
@@ -50,10 +65,11 @@ Volume<float> smoothed(Volume<float> volume, double sigma) {
     if (inVoxels < 0.2 || volume.grid.size[axis] == 1) continue;
     const std::vector<float> kernel = gaussian(inVoxels);
     const int radius = static_cast<int>(kernel.size() / 2);
-    filterLines(volume, axis, radius, [&](const std::vector<float>& in, std::vector<float>& out) {
-      std::fill(out.begin(), out.end(), 0.0F);
-      for (std::size_t r = 0; r < kernel.size(); ++r) {
-        for (std::size_t s = 0; s < out.size(); ++s) out[s] += kernel[r] * in[s + r];
+    filterLines(volume, axis, radius, [&](const Bundle& in, Bundle& out) {
+      for (Eigen::Index s = 0; s < out.cols(); ++s) {
+        Lanes sum = Lanes::Zero();
+        for (std::size_t r = 0; r < kernel.size(); ++r) sum += kernel[r] * in.col(s + r);
+        out.col(s) = sum;
       }
     });
   }
@@ -62,39 +78,48 @@ Volume<float> smoothed(Volume<float> volume, double sigma) {
 
 Volume<float> boxMean(Volume<float> volume, int radius) {
   for (int axis = 0; axis < 3; ++axis) {
-    filterLines(volume, axis, 0, [radius](const std::vector<float>& in, std::vector<float>& out) {
-      const int length = static_cast<int>(in.size());
-      double sum = 0;
-      for (int s = 0; s < std::min(radius, length); ++s) sum += in[s];
+    filterLines(volume, axis, 0, [radius](const Bundle& in, Bundle& out) {
+      const int length = static_cast<int>(in.cols());
+      Eigen::Array<double, kLanes, 1> sum =
+          in.leftCols(std::min(radius, length)).cast<double>().rowwise().sum();
       for (int s = 0; s < length; ++s) {
-        if (s + radius < length) sum += in[s + radius];
-        if (s - radius - 1 >= 0) sum -= in[s - radius - 1];
-        const int low = std::max(0, s - radius);
-        const int high = std::min(length - 1, s + radius);
-        out[s] = static_cast<float>(sum / (high - low + 1));
+        if (s + radius < length) sum += in.col(s + radius).cast<double>();
+        if (s - radius - 1 >= 0) sum -= in.col(s - radius - 1).cast<double>();
+        const int count = std::min(length - 1, s + radius) - std::max(0, s - radius) + 1;
+        out.col(s) = (sum / count).cast<float>();
       }
     });
   }
   return volume;
 }
 
-float valueAt(const Volume<float>& volume, const Vector& index, float outside) {
-  const Grid& grid = volume.grid;
-  int low[3], high[3];
-  float share[3];
+Cell::Cell(const Grid& grid, const Vector& index) {
+  std::size_t stride = 1;
   for (int a = 0; a < 3; ++a) {
-    if (!(index[a] > -0.5 && index[a] < grid.size[a] - 0.5)) return outside;
     const double x = std::clamp(index[a], 0.0, grid.size[a] - 1.0);
-    low[a] = static_cast<int>(x);
-    high[a] = std::min(low[a] + 1, grid.size[a] - 1);
-    share[a] = static_cast<float>(x - low[a]);
+    const int low = static_cast<int>(x);
+    first_ += stride * low;
+    step_[a] = low + 1 < grid.size[a] ? stride : 0;
+    share_[a] = static_cast<float>(x - low);
+    stride *= grid.size[a];
   }
-  const auto along = [&](int j, int k) {
-    return (1 - share[0]) * volume(low[0], j, k) + share[0] * volume(high[0], j, k);
+}
+
+float Cell::of(const Volume<float>& volume) const {
+  const float* const value = volume.data.data() + first_;
+  const auto along = [&](std::size_t row) {
+    return (1 - share_[0]) * value[row] + share_[0] * value[row + step_[0]];
   };
-  const float near = (1 - share[1]) * along(low[1], low[2]) + share[1] * along(high[1], low[2]);
-  const float far = (1 - share[1]) * along(low[1], high[2]) + share[1] * along(high[1], high[2]);
-  return (1 - share[2]) * near + share[2] * far;
+  const float near = (1 - share_[1]) * along(0) + share_[1] * along(step_[1]);
+  const float far = (1 - share_[1]) * along(step_[2]) + share_[1] * along(step_[1] + step_[2]);
+  return (1 - share_[2]) * near + share_[2] * far;
+}
+
+float valueAt(const Volume<float>& volume, const Vector& index, float outside) {
+  for (int a = 0; a < 3; ++a) {
+    if (!(index[a] > -0.5 && index[a] < volume.grid.size[a] - 0.5)) return outside;
+  }
+  return Cell(volume.grid, index).of(volume);
 }
 
 Grid cubicGrid(const Grid& like, const Vector& low, const Vector& high, double spacing) {

@@ -5,6 +5,9 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Volume.h"
 
+#include <array>
+#include <cstddef>
+
 namespace explica::registration {
 
 /// Convolution with a Gaussian of this standard deviation, mm; what lies outside counts as the
@@ -13,6 +16,19 @@ namespace explica::registration {
 
 /// Mean over a box of 2 r + 1 voxels a side, cut at the border.
 [[nodiscard]] Volume<float> boxMean(Volume<float> volume, int radius);
+
+/// The eight voxels around a continuous index, held within the grid, and the shares between them.
+class Cell {
+ public:
+  Cell(const Grid& grid, const Vector& index);
+  /// Trilinear value of a volume on that grid.
+  [[nodiscard]] float of(const Volume<float>& volume) const;
+
+ private:
+  std::size_t first_ = 0;
+  std::array<std::size_t, 3> step_;
+  std::array<float, 3> share_;
+};
 
 /// Trilinear value at a continuous index; `outside` beyond half a voxel from the voxels.
 [[nodiscard]] float valueAt(const Volume<float>& volume, const Vector& index, float outside = 0);

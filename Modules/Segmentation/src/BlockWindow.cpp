@@ -108,20 +108,29 @@ std::vector<float> BlockWindow::atVoxels(const std::vector<double>& values,
   std::vector<float> result(voxel.size());
   parallelForBlocks(voxel.size(), kWindowGrain, [&](std::size_t begin, std::size_t end) {
     Walk walk(grid_);
+    std::vector<double> row(size_[0]);  // of blocks, at the place of a row of voxels
+    std::array<int, 2> placed = {-1, -1};
     for (std::size_t s = begin; s < end; ++s) {
       const auto& at = walk.to(voxel[s]);
-      const Place &x = placeOf(at, 0), &y = placeOf(at, 1), &z = placeOf(at, 2);
-      double sum = 0;
-      for (int c = 0; c < 8; ++c) {
-        sum += ((c & 1) != 0 ? x.share : 1 - x.share) * ((c & 2) != 0 ? y.share : 1 - y.share) *
-               ((c & 4) != 0 ? z.share : 1 - z.share) *
-               values[linear((c & 1) != 0 ? x.high : x.low, (c & 2) != 0 ? y.high : y.low,
-                             (c & 4) != 0 ? z.high : z.low)];
+      if (placed != std::array{at[1], at[2]}) {
+        placed = {at[1], at[2]};
+        blend(values, placeOf(at, 1), placeOf(at, 2), row);
       }
-      result[s] = static_cast<float>(sum);
+      const Place& x = placeOf(at, 0);
+      result[s] = static_cast<float>((1 - x.share) * row[x.low] + x.share * row[x.high]);
     }
   });
   return result;
+}
+
+void BlockWindow::blend(const std::vector<double>& values, const Place& y, const Place& z,
+                        std::vector<double>& row) const {
+  const auto between = [&](int i, int k) {
+    return (1 - y.share) * values[linear(i, y.low, k)] + y.share * values[linear(i, y.high, k)];
+  };
+  for (int i = 0; i < size_[0]; ++i) {
+    row[i] = (1 - z.share) * between(i, z.low) + z.share * between(i, z.high);
+  }
 }
 
 }  // namespace explica::segmentation

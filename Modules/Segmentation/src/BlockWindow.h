@@ -41,6 +41,9 @@ class BlockWindow {
     return places_[axis][at[axis] - first_[axis]];
   }
   [[nodiscard]] std::size_t linear(int i, int j, int k) const;
+  /// The row of blocks between four.
+  void blend(const std::vector<double>& values, const Place& y, const Place& z,
+             std::vector<double>& row) const;
   void smoothAlong(std::vector<double>& values, int axis) const;
 
   Grid grid_;
