@@ -31,11 +31,13 @@ Parameters firstSteps() {
   return steps;
 }
 
-Eigen::Affine3d mapOf(const Parameters& p, const Point& from, const Point& to) {
+/// @param turn  rotation that the parameters' own comes before
+Eigen::Affine3d mapOf(const Parameters& p, const Eigen::Matrix3d& turn, const Point& from,
+                      const Point& to) {
   const Eigen::Matrix3d rotation =
-      (Eigen::AngleAxisd(p[3], Vector::UnitX()) * Eigen::AngleAxisd(p[4], Vector::UnitY()) *
-       Eigen::AngleAxisd(p[5], Vector::UnitZ()))
-          .toRotationMatrix();
+      turn * (Eigen::AngleAxisd(p[3], Vector::UnitX()) * Eigen::AngleAxisd(p[4], Vector::UnitY()) *
+              Eigen::AngleAxisd(p[5], Vector::UnitZ()))
+                 .toRotationMatrix();
   Eigen::Matrix3d scale = Eigen::Matrix3d::Zero();
   for (int a = 0; a < 3; ++a) scale(a, a) = std::exp(p[6 + a]);
   Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
@@ -196,14 +198,17 @@ double searchLine(const Function& value, double step, double& best) {
 }
 
 struct Found {
-  Parameters parameters;
+  Parameters parameters = Parameters::Zero();
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   double value = 0;
 };
 
 /// Climbs along the columns of `directions`, which turn towards where it has gone.
 Found climb(const Level& level, const Point& from, const Point& to, Found found,
             std::vector<Parameters> directions, int sweeps, double tolerance) {
-  const auto at = [&](const Parameters& p) { return information(level, mapOf(p, from, to)); };
+  const auto at = [&](const Parameters& p) {
+    return information(level, mapOf(p, found.turn, from, to));
+  };
   found.value = at(found.parameters);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const Found before = found;
@@ -249,34 +254,75 @@ std::vector<Parameters> allDirections(double size) {
   return directions;
 }
 
-/// Places where the brain's centre may lie: the centre of what is bright, and that of a head's
-/// upper part only, for images with a neck.
-std::vector<Point> centresOf(const Level& level, double reach) {
-  const Volume<float>& image = level.image;
+/// What is bright in an image.
+std::vector<Point> brightOf(const Volume<float>& image) {
   double sum = 0;
   for (const float value : image.data) sum += value;
-  const float least = static_cast<float>(sum / static_cast<double>(image.size()));
-  const auto centre = [&](double lowest) {
-    Point total = Point::Zero();
-    double count = 0;
-    for (std::size_t v = 0; v < image.size(); ++v) {
-      if (!(image[v] > least)) continue;
-      const auto [i, j, k] = image.grid.subscripts(v);
-      const Point at = image.grid.toWorld(Vector(i, j, k));
-      if (at.z() < lowest) continue;
-      total += at;
-      count += 1;
-    }
-    return count > 0 ? Point(total / count) : Point(Point::Zero());
-  };
-  std::vector<double> heights;
+  const auto least = static_cast<float>(sum / static_cast<double>(image.size()));
+  std::vector<Point> bright;
   for (std::size_t v = 0; v < image.size(); ++v) {
     if (!(image[v] > least)) continue;
     const auto [i, j, k] = image.grid.subscripts(v);
-    heights.push_back(image.grid.toWorld(Vector(i, j, k)).z());
+    bright.push_back(image.grid.toWorld(Vector(i, j, k)));
   }
-  if (heights.empty()) throw InvalidInput("T1: holds one value only");
-  return {centre(-kInfinity), centre(quantileOf(std::move(heights), 0.995) - reach)};
+  if (bright.empty()) throw InvalidInput("T1: holds one value only");
+  return bright;
+}
+
+/// Places where the brain's centre may lie: the centre of what is bright, and that of a head's
+/// upper part only, for images with a neck.
+std::array<Point, 2> centresOf(const std::vector<Point>& bright, const Vector& up, double reach) {
+  std::vector<double> heights;
+  for (const Point& at : bright) heights.push_back(up.dot(at));
+  const double lowest = quantileOf(heights, 0.995) - reach;
+  std::array<Point, 2> sums = {Point::Zero(), Point::Zero()};
+  double high = 0;
+  for (std::size_t v = 0; v < bright.size(); ++v) {
+    sums[0] += bright[v];
+    if (heights[v] < lowest) continue;
+    sums[1] += bright[v];
+    ++high;
+  }
+  return {sums[0] / static_cast<double>(bright.size()), sums[1] / std::max(high, 1.0)};
+}
+
+/// Starts about each place where the brain's centre may lie, for a head that is turned.
+std::vector<Found> startsOf(const Level& level, const std::vector<Point>& bright, const Point& from,
+                            const Eigen::Matrix3d& turn, double radius, double unit) {
+  std::vector<Found> starts;
+  for (const Point& centre : centresOf(bright, turn.col(2), 2 * radius)) {
+    for (const double up : {-24.0, 0.0, 24.0}) {
+      for (const double front : {-16.0, 0.0, 16.0}) {
+        for (const double tilt : {-0.3, 0.0, 0.3}) {
+          Found start;
+          start.turn = turn;
+          start.parameters.head<3>() = centre + turn * Vector(0, front * unit, up * unit);
+          start.parameters[3] = tilt;
+          start.value = information(level, mapOf(start.parameters, turn, from, Point::Zero()));
+          starts.push_back(start);
+        }
+      }
+    }
+  }
+  return starts;
+}
+
+/// Rotations by up to 90 degrees, so far apart; climbing finds the way from 30 degrees and more.
+constexpr double kTurn = kPi / 4;
+
+std::vector<Eigen::Matrix3d> turns() {
+  constexpr int kMost = 2;
+  std::vector<Eigen::Matrix3d> found;
+  for (int i = -kMost; i <= kMost; ++i) {
+    for (int j = -kMost; j <= kMost; ++j) {
+      for (int k = -kMost; k <= kMost; ++k) {
+        const Vector v(i, j, k);
+        if (v.norm() < 1 || v.norm() > kMost) continue;
+        found.push_back(Eigen::AngleAxisd(kTurn * v.norm(), v.normalized()).toRotationMatrix());
+      }
+    }
+  }
+  return found;
 }
 
 /// Refuses an image that shows too little of a head for both to be brought together.
@@ -322,45 +368,45 @@ AffineRegistration registerAffine(const Volume<float>& image, const Volume<float
   const Volume<float> fine = inCubes(image, kImageShare * 4 * unit);
   const Volume<float> fineTemplate = inCubes(inTemplate, 4 * unit);
   Level level = makeLevel(fine, fineTemplate, region, 8 * unit);
-  std::vector<Found> starts;
-  std::vector<Point> to;
-  for (const Point& centre : centresOf(level, 2 * radius)) {
-    for (const double up : {-24.0, 0.0, 24.0}) {
-      for (const double front : {-16.0, 0.0, 16.0}) {
-        for (const double tilt : {-0.3, 0.0, 0.3}) {
-          Found start{Parameters::Zero(), 0};
-          start.parameters[1] = front * unit;
-          start.parameters[2] = up * unit;
-          start.parameters[3] = tilt;
-          start.value = information(level, mapOf(start.parameters, from, centre));
-          // Kept about one centre, so that all can be compared.
-          start.parameters.head<3>() += centre;
-          starts.push_back(start);
-        }
-      }
-    }
-  }
-  std::ranges::stable_sort(starts, std::ranges::greater{}, &Found::value);
-  constexpr std::size_t kTried = 6;
-  starts.resize(std::min(starts.size(), kTried));
+  const std::vector<Point> bright = brightOf(level.image);
   Parameters scale = Parameters::Ones();
   scale.head<3>().setConstant(unit);
   const auto scaled = [&](std::vector<Parameters> directions) {
     for (Parameters& d : directions) d = d.cwiseProduct(scale);
     return directions;
   };
-  for (Found& start : starts) {
-    start = climb(level, from, Point::Zero(), start, scaled(rigidAndScale(1)), 4, 1e-4);
-  }
+  const auto climbed = [&](const Level& on, const Found& start) {
+    return climb(on, from, Point::Zero(), start, scaled(rigidAndScale(1)), 4, 1e-4);
+  };
+  // The best of some starts, climbed from the most promising ones.
+  const auto bestOf = [&](std::vector<Found> some) {
+    std::ranges::stable_sort(some, std::ranges::greater{}, &Found::value);
+    some.resize(std::min<std::size_t>(some.size(), 6));
+    for (Found& start : some) start = climbed(level, start);
+    return *std::ranges::max_element(some, {}, &Found::value);
+  };
+  Found best = bestOf(startsOf(level, bright, from, Eigen::Matrix3d::Identity(), radius, unit));
+  monitor.progress(0.3, "affine registration");
+  // A header may be wrong, or the head turned in it: what is found so counts where it is turned.
+  const Level coarse = makeLevel(fine, fineTemplate, region, 12 * unit);
+  const std::vector<Eigen::Matrix3d> all = turns();
+  std::vector<Found> turned(all.size());
+  parallelFor(all.size(), 1, [&](std::size_t t) {
+    const std::vector<Found> here = startsOf(coarse, bright, from, all[t], radius, unit);
+    turned[t] = climbed(coarse, *std::ranges::max_element(here, {}, &Found::value));
+  });
+  const Found other = bestOf(std::move(turned));
+  const Eigen::Affine3d map = mapOf(other.parameters, other.turn, from, Point::Zero());
+  const bool isTurned = Eigen::AngleAxisd(map.rotation()).angle() > 0.5 * kTurn;
+  if (isTurned && other.value > best.value) best = other;
   monitor.progress(0.4, "affine registration");
-  Found best = *std::ranges::max_element(starts, {}, &Found::value);
   best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.7)), 5, 1e-5);
   for (const double spacing : {6.0, 4.0}) {
     monitor.progress(spacing > 5 ? 0.6 : 0.8, "affine registration");
     level = makeLevel(fine, fineTemplate, region, spacing * unit);
     best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.25)), 5, 1e-5);
   }
-  return {mapOf(best.parameters, from, Point::Zero()), best.value};
+  return {mapOf(best.parameters, best.turn, from, Point::Zero()), best.value};
 }
 
 Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>& second,
@@ -368,7 +414,7 @@ Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>
   const Volume<float> head = headOf(image);
   const Point centre = centreOf(head);
   requireSeen(head, second.grid);
-  Found found{Parameters::Zero(), 0};
+  Found found;
   for (const double spacing : {4.0, 2.0}) {
     checkpoint(monitor);
     const Level level = makeLevel(second, image, head, spacing);
@@ -382,7 +428,7 @@ Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>
     throw InvalidInput(
         "t2: it does not look like the image, wherever it is moved: is it of the same head?");
   }
-  const Eigen::Affine3d map = mapOf(found.parameters, centre, centre);
+  const Eigen::Affine3d map = mapOf(found.parameters, found.turn, centre, centre);
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
   motion.linear() = map.linear();
   motion.translation() = map.translation();
