@@ -12,12 +12,17 @@
 #include "Explica/Surface/Summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <span>
 #include <sstream>
 
 namespace explica::app {
+
+using surface::Columns;
+using surface::VertexKeys;
+
 namespace {
 
 std::string regionName(const CortexRegions& regions, Label key) {
@@ -46,11 +51,11 @@ bool noRegion(const std::string& name, const std::string& structure) {
   return named.kind != segmentation::StructureKind::Cortex || named.side == other;
 }
 
-/// Region of each vertex; 0 where there is none.
-surface::VertexKeys regionKeys(const CortexRegions& regions, const surface::CorticalSurfaces& made,
-                               const std::string& structure) {
+/// Region of each column between white and outer border; 0 where there is none.
+VertexKeys regionKeys(const CortexRegions& regions, const Positions& white, const Positions& pial,
+                      const std::string& structure) {
   if (!regions.atlas) {
-    surface::VertexKeys keys = regions.parcellation->keys;
+    VertexKeys keys = regions.parcellation->keys;
     for (Label& key : keys) key = noRegion(regionName(regions, key), structure) ? 0 : key;
     return keys;
   }
@@ -60,12 +65,11 @@ surface::VertexKeys regionKeys(const CortexRegions& regions, const surface::Cort
     return !io::freeSurferRegion(label).empty();
   });
   const Label thousand = structure == "CortexRight" ? 2 : 1;
-  return surface::labelsWithin(
-      *regions.atlas, made.white.mesh.positions, made.pial.positions, [&](Label label) {
-        if (!freeSurfer) return !noRegion(regionName(regions, label), structure);
-        const std::string name = io::freeSurferRegion(label);
-        return !name.empty() && !noRegion(name, structure) && label / 1000 == thousand;
-      });
+  return surface::labelsWithin(*regions.atlas, white, pial, [&](Label label) {
+    if (!freeSurfer) return !noRegion(regionName(regions, label), structure);
+    const std::string name = io::freeSurferRegion(label);
+    return !name.empty() && !noRegion(name, structure) && label / 1000 == thousand;
+  });
 }
 
 }  // namespace
@@ -99,13 +103,21 @@ CortexRegions readRegions(Context& context, const SurfaceSettings& s,
 
 std::size_t writeRegions(Context& context, const CortexRegions& regions,
                          const surface::CorticalSurfaces& made, const std::string& structure) {
-  const surface::VertexKeys keys = regionKeys(regions, made, structure);
+  const Columns& columns = made.columns;
+  const VertexKeys keys =
+      regionKeys(regions, made.white.mesh.positions, made.pial.positions, structure);
+  const VertexKeys keysOfColumns = regionKeys(regions, columns.inner, columns.outer, structure);
   std::set<Label> used(keys.begin(), keys.end());
   used.erase(0);
   const std::vector<Label> all(used.begin(), used.end());
+  const auto momentsOf = [&](const VertexKeys& of, const Eigen::VectorXd& values,
+                             const Eigen::VectorXd& areas) {
+    const std::span<const Label> each(of.data(), static_cast<std::size_t>(of.size()));
+    return maps::regionMoments(each, values, areas, all);
+  };
+  const Eigen::VectorXd areas = geometry::vertexAreas(made.mid);
   const auto moments = [&](const Eigen::VectorXd& values) {
-    const std::span<const Label> of(keys.data(), static_cast<std::size_t>(keys.size()));
-    return maps::regionMoments(of, values, made.columnArea, all);
+    return momentsOf(keys, values, areas);
   };
   // A thickness of 0 is not known.
   const auto known = [](const Eigen::VectorXd& thickness) -> Eigen::VectorXd {
@@ -114,7 +126,7 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   const auto sizes = moments(geometry::vertexAreas(made.white.mesh)),
              volumes = moments(maps::vertexVolumes(made.white.mesh,
                                                    {made.pial.positions, made.white.mesh.faces})),
-             measured = moments(known(made.columnThickness)),
+             measured = momentsOf(keysOfColumns, known(columns.thickness), columns.area),
              nearest = moments(known(made.nearestThickness));
   const Eigen::VectorXd doubtful = surface::doubtfulOf(made);
   const bool isDoubted = doubtful.size() > 0;
@@ -124,17 +136,22 @@ std::size_t writeRegions(Context& context, const CortexRegions& regions,
   table << "index\tname\tvertices\tarea_white_mm2\tthickness_mean_mm\tthickness_sd_mm\tthickness_"
            "nearest_mean_mm"
         << (isDoubted ? "\tdoubtful_share" : "") << "\tvolume_mm3\n";
+  const auto write = [&](double value) {
+    table << '\t';
+    if (std::isnan(value)) {
+      table << "n/a";
+    } else {
+      table << value;
+    }
+  };
   io::LabelMap labels{"regions", keys, {{0, "???", {0, 0, 0, 0}}}};
   for (std::size_t r = 0; r < all.size(); ++r) {
     const std::string name = regionName(regions, all[r]);
     table << all[r] << '\t' << name << '\t' << sizes[r].count << '\t' << sizes[r].sum;
-    if (measured[r].count > 0) {
-      table << '\t' << measured[r].meanOverArea << '\t' << measured[r].deviationOverArea << '\t'
-            << nearest[r].meanOverArea;
-      if (isDoubted) table << '\t' << doubt[r].meanOverArea;
-    } else {
-      table << (isDoubted ? "\tn/a\tn/a\tn/a\tn/a" : "\tn/a\tn/a\tn/a");
-    }
+    write(measured[r].meanOverArea);
+    write(measured[r].deviationOverArea);
+    write(nearest[r].meanOverArea);
+    if (isDoubted) write(doubt[r].meanOverArea);
     table << '\t' << volumes[r].sum << '\n';
     labels.table.push_back({all[r], name, regionColour(regions, all[r])});
   }

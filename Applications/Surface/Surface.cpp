@@ -111,11 +111,6 @@ surface::SurfaceSummary summaryOf(const SurfaceSettings& s, const surface::Corti
     summary.thickness =
         surface::thicknessMeansOf(made, s.thicknessMeasure == ThicknessMeasure::Nearest);
   }
-  summary.thicknessKnown.reset();
-  if (made.sheet.open) {
-    const Eigen::VectorXd known = surface::validOf(made).array() * made.columnThickness.array();
-    summary.thicknessKnown = surface::meanThickness(made.columnArea, known);
-  }
   return summary;
 }
 
@@ -183,7 +178,7 @@ Termination run(Context& context, const SurfaceSettings& s) {
   }
   // Labels named by hand need not be a cortex's.
   if (tissue.hasGrey && s.tissue.white.empty()) {
-    judge.flag("thickness-mean", surface::meanThickness(made.columnArea, made.columnThickness));
+    judge.flag("thickness-mean", surface::meanThickness(made.columns.area, made.columns.thickness));
   }
   const std::int64_t meetings = summary.meetings();
   if (!given && meetings > 0) {

@@ -14,6 +14,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
 
 namespace explica::testing {
 namespace {
@@ -167,6 +170,48 @@ TEST(SurfaceCommand, MakesSheetsOfABlockAndSaysSo) {
   EXPECT_EQ(unfolded.exitCode, 3) << unfolded;  // stopped early
   const auto flat = explica({"flatten", folder / "out/mid.surf.gii", "--out", folder / "flat"});
   EXPECT_EQ(flat.exitCode, 0) << flat;
+}
+
+/// Of each region in regions.tsv its mean thickness, mm.
+std::map<std::string, double> thicknessByRegion(const std::string& file) {
+  std::istringstream table(readText(file));
+  std::map<std::string, double> means;
+  std::string line;
+  std::getline(table, line);
+  while (std::getline(table, line)) {
+    std::istringstream row(line);
+    std::string index, name, vertices, area, mean;
+    row >> index >> name >> vertices >> area >> mean;
+    means[name] = std::stod(mean);
+  }
+  return means;
+}
+
+TEST(SurfaceCommand, RegionsHaveTheirThicknessHoweverCoarseTheMesh) {
+  TemporaryFolder folder;
+  Grid grid;
+  grid.size = {48, 48, 48};
+  Volume<Label> labels(grid), atlas(grid);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const Vector p = Vector(s[0], s[1], s[2]) - Vector::Constant(23.5);
+    // From 2 mm in -x to 6 mm in +x; a small region where it changes most.
+    labels[v] = p.norm() < 14 ? 3 : p.norm() < 18 + 2 * p.x() / p.norm() ? 2 : 0;
+    atlas[v] = p.z() > 0.9 * p.norm() && p.x() > 0 ? 7 : 8;
+  }
+  io::writeVolume(folder / "labels.nii.gz", labels);
+  io::writeVolume(folder / "atlas.nii.gz", atlas);
+  const auto regionsAt = [&](const std::string& faces) {
+    const auto made =
+        explica({"surface", folder / "labels.nii.gz", "--white-label", "3", "--grey-label", "2",
+                 "--atlas", folder / "atlas.nii.gz", "--faces", faces, "--out", folder / faces});
+    EXPECT_EQ(made.exitCode, 0) << made;
+    return thicknessByRegion(folder / (faces + "/regions.tsv"));
+  };
+  const auto coarse = regionsAt("400"), fine = regionsAt("12000");
+  EXPECT_EQ(fine.size(), 2);
+  EXPECT_NEAR(fine.at("label7"), 4.5, 0.2);
+  for (const auto& [name, mean] : fine) EXPECT_NEAR(coarse.at(name), mean, 0.001) << name;
 }
 
 }  // namespace

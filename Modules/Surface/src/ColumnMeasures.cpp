@@ -4,7 +4,6 @@
 #include "ColumnMeasures.h"
 
 #include "Explica/Core/Parallel.h"
-#include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Surface/LevelSet.h"
 
@@ -39,36 +38,26 @@ Eigen::VectorXd thicknessAtVertices(const harmonic::Annulus& annulus,
   return thickness;
 }
 
-Columns columnsAround(const harmonic::Annulus& annulus, const correspondence::Correspondence& found,
-                      const TriangleMesh& middle) {
-  const geometry::FaceTree tree(middle);
-  std::vector<std::int32_t> nearest(annulus.count());
-  parallelForBlocks(nearest.size(), 512, [&](std::size_t begin, std::size_t end) {
-    std::int32_t face = 0;  // of the voxel before
-    for (std::size_t n = begin; n < end; ++n) {
-      const Point x = annulus.world(static_cast<std::int32_t>(n));
-      face = tree.closestPoint(x, face).face;
-      int corner = 0;
-      for (int c = 1; c < 3; ++c) {
-        if ((middle.corner(face, c) - x).squaredNorm() <
-            (middle.corner(face, corner) - x).squaredNorm()) {
-          corner = c;
-        }
-      }
-      nearest[n] = middle.faces(face, corner);
-    }
-  });
-  Columns columns;
-  columns.area = columns.thickness = Eigen::VectorXd::Zero(middle.vertexCount());
-  const double volume = annulus.grid.voxelVolume();
-  for (std::size_t n = 0; n < nearest.size(); ++n) {
-    const double area = volume * correspondence::columnWeight(found, n);
-    if (!(area > 0)) continue;
-    columns.area[nearest[n]] += area;
-    columns.thickness[nearest[n]] += area * found.thickness(n);
+Columns columnsOf(const harmonic::Annulus& annulus, const correspondence::Correspondence& found,
+                  const std::vector<std::uint8_t>& leftOut) {
+  std::vector<std::int32_t> known;
+  for (std::size_t n = 0; n < annulus.count(); ++n) {
+    if (!leftOut.empty() && leftOut[n]) continue;
+    if (correspondence::columnWeight(found, n) > 0) known.push_back(static_cast<std::int32_t>(n));
   }
-  columns.thickness =
-      (columns.area.array() > 0).select(columns.thickness.array() / columns.area.array(), 0.0);
+  const auto count = static_cast<Eigen::Index>(known.size());
+  Columns columns{Positions(count, 3), Positions(count, 3), Eigen::VectorXd(count),
+                  Eigen::VectorXd(count)};
+  const double volume = annulus.grid.voxelVolume();
+  parallelFor(known.size(), 4096, [&](std::size_t c) {
+    const auto row = static_cast<Eigen::Index>(c);
+    const std::int32_t n = known[c];
+    const Point centre = annulus.world(n);
+    columns.inner.row(row) = centre + found.innerPoint[n].cast<double>();
+    columns.outer.row(row) = centre + found.outerPoint[n].cast<double>();
+    columns.area[row] = volume * correspondence::columnWeight(found, n);
+    columns.thickness[row] = found.thickness(n);
+  });
   return columns;
 }
 

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Correspondence/Correspondence.h"
+#include "Explica/Surface/CorticalSurface.h"
 
 namespace explica::surface {
 
@@ -13,15 +14,10 @@ namespace explica::surface {
                                                   const correspondence::Correspondence& found,
                                                   const TriangleMesh& middle);
 
-/// The part of the tissue's middle surface that is nearest to each vertex.  It is that of the
-/// voxels' columns: a mesh whose edges are no shorter than cortex is curved cuts off crowns and
-/// floors, where cortex is thicker and thinner than elsewhere.
-struct Columns {
-  Eigen::VectorXd area;       ///< mm^2
-  Eigen::VectorXd thickness;  ///< its mean, mm; 0 without area
-};
-[[nodiscard]] Columns columnsAround(const harmonic::Annulus& annulus,
-                                    const correspondence::Correspondence& found,
-                                    const TriangleMesh& middle);
+/// A column for each voxel of known thickness, with the voxel's share of its cross-section.
+/// @param leftOut  1 at voxels without one; empty: none
+[[nodiscard]] Columns columnsOf(const harmonic::Annulus& annulus,
+                                const correspondence::Correspondence& found,
+                                const std::vector<std::uint8_t>& leftOut = {});
 
 }  // namespace explica::surface

@@ -517,9 +517,7 @@ CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
   const RibbonVoxels voxels(between ? *between : first);
   takeThickness(ribbon, voxels, result);
   mendTriangles(result);
-  Columns around = columnsAround(voxels.annulus, voxels.found, result.mid);
-  result.columnArea = std::move(around.area);
-  result.columnThickness = std::move(around.thickness);
+  result.columns = columnsOf(voxels.annulus, voxels.found);
   result.seconds.growing = watch.lap();
 
   monitor.progress(0.96, "curvature and depth");

@@ -54,13 +54,14 @@ CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
   if (mid) requireSameFaces(white, *mid, "middle");
   CorticalSurfaces surfaces;
   surfaces.thickness = distanceThickness(white, pial);
-  surfaces.nearestThickness = surfaces.columnThickness = surfaces.thickness;
+  surfaces.nearestThickness = surfaces.thickness;
   surfaces.noRibbon = (surfaces.thickness.array() == 0).count();
   surfaces.curvature = maps::meanCurvature(white);
   surfaces.sulcalDepth = maps::sulcalDepth(white);
   surfaces.mid =
       mid ? std::move(*mid) : TriangleMesh{0.5 * (white.positions + pial.positions), white.faces};
-  surfaces.columnArea = geometry::vertexAreas(surfaces.mid);
+  surfaces.columns = {white.positions, pial.positions, geometry::vertexAreas(surfaces.mid),
+                      surfaces.thickness};
   surfaces.white.mesh = std::move(white);
   surfaces.pial = std::move(pial);
   return surfaces;

@@ -22,10 +22,12 @@ SurfaceCheck checkOf(const TriangleMesh& mesh) {
 ThicknessMeans thicknessMeansOf(const CorticalSurfaces& made, bool nearest) {
   ThicknessMeans means;
   means.measure = nearest ? "nearest" : "trajectory";
-  means.trajectory = meanThickness(made.columnArea, made.columnThickness);
-  means.nearest = meanThickness(made.columnArea, made.nearestThickness);
+  const Eigen::VectorXd areas = geometry::vertexAreas(made.mid);
+  means.trajectory = meanThickness(made.columns.area, made.columns.thickness);
+  means.nearest = meanThickness(areas, made.nearestThickness);
   means.mean = nearest ? means.nearest : means.trajectory;
-  means.sd = thicknessDeviation(made.columnArea, nearest ? made.nearestThickness : made.thickness);
+  means.sd = nearest ? thicknessDeviation(areas, made.nearestThickness)
+                     : thicknessDeviation(made.columns.area, made.columns.thickness);
   return means;
 }
 
@@ -228,7 +230,8 @@ void describeSheet(Results& t, const SurfaceSummary& s, const SheetFacts& sheet)
           "Thickness could not be measured there.", where(open, sheet.interpolated));
   t.count("vertices_cut_by_image", "Vertices cut by the image",
           "The image's edge may change their thickness.", where(open, sheet.cutByImage));
-  t.number("thickness_mean_known", "Mean thickness where it is known", "mm", "", s.thicknessKnown);
+  t.number("thickness_mean_known", "Mean thickness where it is known", "mm", "",
+           where(open, sheet.thicknessKnown));
 }
 
 void describeTimes(Results& t, bool made, const SurfaceTimes& seconds) {

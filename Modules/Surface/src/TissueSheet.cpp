@@ -16,6 +16,7 @@
 #include "Explica/Maps/Folding.h"
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Measures.h"
+#include "Explica/Surface/Regions.h"
 #include "Explica/Surface/Remesh.h"
 #include "Growth.h"
 #include "KeepRoom.h"
@@ -29,7 +30,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <utility>
 
@@ -336,45 +336,19 @@ Grown grow(const TriangleMesh& sheet, const std::vector<Trajectory>& paths, doub
   return grown;
 }
 
-/// Marks vertices whose thickness the image's edge may have changed: nearest vertex of a rim on
-/// that edge, carried from neighbour to neighbour.
-void markCut(const Grid& image, const TriangleMesh& sheet, const Eigen::VectorXd& thickness,
+/// Marks vertices in whose column the image's edge may have changed a voxel's thickness.
+void markCut(const Annulus& annulus, const std::vector<std::uint8_t>& nearEdge,
              CorticalSurfaces& made) {
-  SheetFacts& facts = made.sheet;
-  const auto topology = geometry::buildTopology(sheet.faces, sheet.vertexCount());
-  std::vector<std::int32_t> nearest(sheet.vertexCount(), -1);
-  std::deque<std::int32_t> waiting;
-  const auto rims = geometry::boundaryLoops(sheet.faces, sheet.vertexCount());
-  facts.rims = static_cast<std::int64_t>(rims.size());
-  for (const auto& rim : rims) {
-    for (const std::int32_t v : rim) {
-      if (!onImageEdge(image, sheet.positions.row(v))) continue;
-      nearest[v] = v;
-      waiting.push_back(v);
-    }
+  Volume<Label> marks(annulus.grid, 0);
+  for (std::size_t n = 0; n < nearEdge.size(); ++n) {
+    marks[annulus.linear(static_cast<std::int32_t>(n))] = nearEdge[n];
   }
-  const auto distance = [&](std::int32_t v, std::int32_t source) {
-    return (sheet.positions.row(v) - sheet.positions.row(source)).norm();
-  };
-  while (!waiting.empty()) {
-    const std::int32_t v = waiting.front();
-    waiting.pop_front();
-    for (const std::int32_t w : topology.vertexVertices[v]) {
-      if (nearest[w] >= 0 && distance(w, nearest[w]) <= distance(w, nearest[v])) continue;
-      nearest[w] = nearest[v];
-      waiting.push_back(w);
-    }
-  }
-  for (std::size_t v = 0; v < nearest.size(); ++v) {
-    if (nearest[v] < 0) continue;
-    const auto row = static_cast<Eigen::Index>(v);
-    double least = kInfinity;
-    for (const TriangleMesh* mesh : {&made.white.mesh, &made.mid, &made.pial}) {
-      least = std::min(least, (mesh->positions.row(row) - sheet.positions.row(nearest[v])).norm());
-    }
-    if (least >= correspondence::kEdgeReach * thickness[row]) continue;
-    facts.known[v] = 0;
-    ++facts.cutByImage;
+  const VertexKeys cut = labelsWithin(marks, made.white.mesh.positions, made.pial.positions,
+                                      [](Label) { return true; });
+  for (Eigen::Index v = 0; v < cut.size(); ++v) {
+    if (cut[v] == 0) continue;
+    made.sheet.known[static_cast<std::size_t>(v)] = 0;
+    ++made.sheet.cutByImage;
   }
 }
 
@@ -477,13 +451,16 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   monitor.progress(0.95, "curvature");
   made.curvature = maps::meanCurvature(made.white.mesh);
   made.nearestThickness = distanceThickness(made.white.mesh, made.pial);
-  markCut(masks.white.grid, sheet, made.thickness, made);
+  facts.rims =
+      static_cast<std::int64_t>(geometry::boundaryLoops(sheet.faces, sheet.vertexCount()).size());
   const auto found = correspondence::findCorrespondences(field.annulus, field.interpolant);
   const Eigen::VectorXd ofVoxels = thicknessAtVertices(field.annulus, found, made.mid);
   made.thickness = ofVoxels.array().isNaN().select(made.thickness, ofVoxels);
-  Columns around = columnsAround(field.annulus, found, made.mid);
-  made.columnArea = std::move(around.area);
-  made.columnThickness = std::move(around.thickness);
+  const auto nearEdge = correspondence::nearImageEdge(field.annulus, {true, true, true}, found);
+  markCut(field.annulus, nearEdge, made);
+  made.columns = columnsOf(field.annulus, found);
+  const Columns known = columnsOf(field.annulus, found, nearEdge);
+  facts.thicknessKnown = meanThickness(known.area, known.thickness);
   made.noRibbon = (made.thickness.array() == 0).count();
   made.seconds.measures = secondsSince(last);
   monitor.progress(1, "surfaces");

@@ -347,7 +347,7 @@ TEST(CorticalSurface, MeanThicknessIsFreeOfSampling) {
     SurfaceOptions many;
     many.faces = faces;
     const auto made = buildSurfaces(tissueFromLabels(labels, options), many);
-    const double mean = meanThickness(made.columnArea, made.columnThickness);
+    const double mean = meanThickness(made.columns.area, made.columns.thickness);
     std::printf("%d faces, voxels of %g mm: mean thickness %.4f mm\n", faces,
                 labels.grid.spacing[0], mean);
     return mean;
@@ -697,8 +697,8 @@ TEST(CorticalSurface, LongVoxelsDoNotLengthenTrajectoriesInFurrows) {
     const auto made =
         buildSurfaces(tissueFromShares(blocksOf(fine.white, block), blocksOf(fine.tissue, block)),
                       blocksOf(fine.image, block), options);
-    const double mean = meanThickness(made.columnArea, made.columnThickness);
-    const double nearest = meanThickness(made.columnArea, made.nearestThickness);
+    const double mean = meanThickness(made.columns.area, made.columns.thickness);
+    const double nearest = meanThickness(geometry::vertexAreas(made.mid), made.nearestThickness);
     std::printf("voxels of %d x %d x %d half mm: %.3f mm, nearest %.3f mm\n", block[0], block[1],
                 block[2], mean, nearest);
     return mean - nearest;

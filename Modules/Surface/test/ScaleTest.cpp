@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(VoxelSizes, Scale, ::testing::Values(-20, 20));
 
 TEST(Scale, ByAThousandChangesTheResultByRounding) {
   const CorticalSurfaces& here = inMillimetres();
-  const double thickness = meanThickness(here.columnArea, here.columnThickness),
+  const double thickness = meanThickness(here.columns.area, here.columns.thickness),
                white = geometry::totalArea(here.white.mesh), pial = geometry::totalArea(here.pial);
   // Rounding makes another mesh of the same surface.  Its vertices start elsewhere beside the
   // buried sulci: meshes at eight units have means of thickness with a deviation of 0.5 per cent.
@@ -59,7 +59,7 @@ TEST(Scale, ByAThousandChangesTheResultByRounding) {
   for (const double unit : {1e-3, 1e3}) {
     const CorticalSurfaces there = surfacesAt(unit);
     EXPECT_NEAR(geometry::totalArea(there.white.mesh) / (unit * unit), white, kSurface * white);
-    EXPECT_NEAR(meanThickness(there.columnArea, there.columnThickness) / unit, thickness,
+    EXPECT_NEAR(meanThickness(there.columns.area, there.columns.thickness) / unit, thickness,
                 kMeshes * thickness);
     EXPECT_NEAR(geometry::totalArea(there.pial) / (unit * unit), pial, kMeshes * pial);
   }

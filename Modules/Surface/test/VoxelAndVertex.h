@@ -71,7 +71,7 @@ inline VoxelAndVertex compare(const char* name, const TissueMasks& masks,
   both.absolute = absolute / n;
   both.share = n / static_cast<double>((made.thickness.array() > 0).count());
   both.meanOfVoxels = correspondence::summaryOf(found).mean;
-  both.meanOfVertices = meanThickness(made.columnArea, made.columnThickness);
+  both.meanOfVertices = meanThickness(made.columns.area, made.columns.thickness);
   std::printf(
       "%s, voxel and vertex: r %.4f, mean %+.4f mm, absolute %.4f mm, %.1f %% of the vertices; "
       "means %.4f and %.4f mm\n",

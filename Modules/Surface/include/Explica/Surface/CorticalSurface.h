@@ -67,7 +67,17 @@ struct SheetFacts {
   std::int64_t interpolated = 0;    ///< vertices whose trajectory does not reach both boundaries:
                                     ///< their ends are the mean of their neighbours'
   std::int64_t cutByImage = 0;      ///< vertices whose thickness the image's edge may change
+  double thicknessKnown = kNaN;     ///< mean over the columns that it leaves, mm
   std::vector<std::uint8_t> known;  ///< V, 0 for both of these
+};
+
+/// Columns of tissue from the inner to the outer border.  Sums over them are sums over the tissue's
+/// middle surface, whatever mesh stands for that: one whose edges are no shorter than cortex is
+/// curved cuts off crowns and floors, and its vertices are too few to say where a region ends.
+struct Columns {
+  Positions inner, outer;     ///< C x 3, ends
+  Eigen::VectorXd area;       ///< C, of the cross-section at half depth, mm^2
+  Eigen::VectorXd thickness;  ///< C, mm; 0 is not known
 };
 
 /// White, middle and outer surface with the same faces; vertex i of one corresponds to vertex i of
@@ -76,11 +86,9 @@ struct CorticalSurfaces {
   WhiteSurface white;
   TriangleMesh mid;  ///< at half the way
   TriangleMesh pial;
-  Eigen::VectorXd thickness;   ///< of the ribbon's voxels at the middle surface, mm; 0 where there
-                               ///< is no ribbon
-  Eigen::VectorXd columnArea;  ///< of the tissue's middle surface nearest to each middle vertex,
-                               ///< mm^2; of surfaces that were given, that of the mesh
-  Eigen::VectorXd columnThickness;   ///< mean there, mm; of given surfaces `thickness`
+  Eigen::VectorXd thickness;  ///< of the ribbon's voxels at the middle surface, mm; 0 where there
+                              ///< is no ribbon
+  Columns columns;            ///< one a voxel; of given surfaces one a vertex
   Eigen::VectorXd nearestThickness;  ///< as distanceThickness(), mm; 0 where there is no ribbon
   Eigen::VectorXd curvature;         ///< mean, of the white surface, mm^-1; positive in sulci
   Eigen::VectorXd sulcalDepth;    ///< of the white surface, maps::sulcalDepth, mm; empty of sheets
@@ -142,8 +150,8 @@ struct BorderImages {
                                              const Monitor& monitor = {});
 
 /// Mean over the middle surface where there is grey matter, mm.
-/// @param areas      of the middle surface, per vertex: CorticalSurfaces::columnArea
-/// @param thickness  per vertex, mm; 0 where there is no grey matter
+/// @param areas      of the middle surface, per column or vertex
+/// @param thickness  there, mm; 0 where there is no grey matter
 [[nodiscard]] double meanThickness(const Eigen::VectorXd& areas, const Eigen::VectorXd& thickness);
 
 /// Its standard deviation over that surface, mm.

@@ -51,7 +51,6 @@ struct SurfaceSummary {
   std::optional<double> bareShare = kNaN;  ///< of white matter's border
   double smallestAngleDeg = kNaN;          ///< 5th percentile over the white surface's faces
   std::optional<ThicknessMeans> thickness = ThicknessMeans{};
-  std::optional<double> thicknessKnown = kNaN;  ///< of a sheet, where it is known
   bool hasImage = true;
   std::optional<double> secondMoved = kNaN;  ///< mm: a second image's way onto the first, farthest
   std::optional<std::size_t> regions = 0;
