@@ -225,6 +225,37 @@ TEST(Energy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
   }
 }
 
+TEST(Energy, AFaceOfTheCollarThatHasGivenWayIsHeldBackNoHarderFartherOn) {
+  Sample s;
+  s.multipliers.setZero();
+  const Positions& x = s.mesh.positions;
+  const auto stretchTo = [&](double ratio) {
+    for (PatchFace& face : s.patch.faces) face.restArea = shapeOf(face, x).area / ratio;
+  };
+  const TermValues strengths = only(Term::Collar, 0);  // what holds back has a strength of its own
+  const auto heldAt = [&](double ratio) {
+    stretchTo(ratio);
+    return s.value(x, strengths);
+  };
+  EXPECT_EQ(heldAt(kCollarMean), 0);
+  const double most = heldAt(kCollarMost), farther = heldAt(2 * kCollarMost);
+  EXPECT_GT(most, 0);
+  EXPECT_NEAR(heldAt(3 * kCollarMost) - farther, farther - most, 1e-12 * farther);
+  // The fifth power's slope at its end goes on.
+  EXPECT_NEAR(farther - most, 5 * most * kCollarMost / (kCollarMost - kCollarMean),
+              1e-12 * farther);
+
+  stretchTo(1.5 * kCollarMost);
+  const Positions d = randomDirection(s.mesh.vertexCount(), 3);
+  const double slope = (s.gradient(strengths).array() * d.array()).sum();
+  const auto remainder = [&](double h) {
+    return std::abs(s.value(x + h * d, strengths) - s.value(x, strengths) - h * slope);
+  };
+  const double rate = std::log10(remainder(1e-3) / remainder(1e-4));
+  EXPECT_GT(rate, 1.85);
+  EXPECT_LT(rate, 2.15);
+}
+
 /// What "Add an energy" of the module's page asks for, and no more: a pull of the region's faces to
 /// a plane, strength/2 * sum of w (h / radius)^2, h the height of the centroid over the plane.
 class PlaneEnergy final : public Energy {

@@ -180,10 +180,12 @@ struct StretchOfFace {
     const double ratio = now.shapes[f].area / face.restArea;
     const double membrane = strength * kCollarArea * face.weight;
     const double hold = kHold * face.holdWeight;
-    const double t = std::max(0.0, (ratio - kCollarMean) * kRate), t3 = t * t * t;
-    return {ratio, 0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * t3 * t * t,
-            membrane * (ratio - 1) + 5 * hold * t3 * t * kRate,
-            membrane + 20 * hold * t3 * kRate * kRate};
+    const double t = std::max(0.0, (ratio - kCollarMean) * kRate), u = std::min(t, 1.0);
+    const double u3 = u * u * u;
+    const double curvature = t > 1 ? 5 / t : 20 * u3;
+    return {ratio, 0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * u3 * u * (u + 5 * (t - u)),
+            membrane * (ratio - 1) + 5 * hold * u3 * u * kRate,
+            membrane + hold * curvature * kRate * kRate};
   }
 
   static double value(const Configuration& now, std::size_t f, double strength) {
