@@ -225,7 +225,7 @@ TEST(Energy, StiffnessIsTheHessianWhereAreasAndLengthsAreAtRest) {
   }
 }
 
-TEST(Energy, AFaceOfTheCollarThatHasGivenWayIsHeldBackNoHarderFartherOn) {
+TEST(Energy, AFaceOfTheCollarThatHasGivenWayIsHeldBackNoStifferFartherOn) {
   Sample s;
   s.multipliers.setZero();
   const Positions& x = s.mesh.positions;
@@ -233,17 +233,16 @@ TEST(Energy, AFaceOfTheCollarThatHasGivenWayIsHeldBackNoHarderFartherOn) {
     for (PatchFace& face : s.patch.faces) face.restArea = shapeOf(face, x).area / ratio;
   };
   const TermValues strengths = only(Term::Collar, 0);  // what holds back has a strength of its own
-  const auto heldAt = [&](double ratio) {
-    stretchTo(ratio);
+  const auto heldAt = [&](double share) {              // of the way from kCollarMean to kCollarMost
+    stretchTo(kCollarMean + share * (kCollarMost - kCollarMean));
     return s.value(x, strengths);
   };
-  EXPECT_EQ(heldAt(kCollarMean), 0);
-  const double most = heldAt(kCollarMost), farther = heldAt(2 * kCollarMost);
-  EXPECT_GT(most, 0);
-  EXPECT_NEAR(heldAt(3 * kCollarMost) - farther, farther - most, 1e-12 * farther);
-  // The fifth power's slope at its end goes on.
-  EXPECT_NEAR(farther - most, 5 * most * kCollarMost / (kCollarMost - kCollarMean),
-              1e-12 * farther);
+  const double most = heldAt(1);
+  EXPECT_EQ(heldAt(0), 0);
+  EXPECT_NEAR(heldAt(0.5), most / 32, 1e-12 * most);
+  // Value, slope and curvature of the fifth power go on from there as a parabola.
+  EXPECT_NEAR(heldAt(1.5), (1 + 5 * 0.5 + 10 * 0.25) * most, 1e-12 * most);
+  EXPECT_NEAR(heldAt(5), (1 + 5 * 4 + 10 * 16) * most, 1e-10 * most);
 
   stretchTo(1.5 * kCollarMost);
   const Positions d = randomDirection(s.mesh.vertexCount(), 3);

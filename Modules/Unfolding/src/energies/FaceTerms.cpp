@@ -164,7 +164,8 @@ constexpr double kHold =
 
 /// What a face's area ratio costs: m(r) = strength k/2 (r - 1)^2 for each mm^2 of its weight, and
 /// b(r) = kHold t^5, t = max(0, (r - kCollarMean) / (kCollarMost - kCollarMean)), of its hold
-/// weight.
+/// weight, beyond t = 1 the parabola that goes on there: as stiff as it gets, so that a needle
+/// which has given way, and turns, stops no step of all others.
 struct StretchOfFace {
   static constexpr bool kOfCollar = true;
 
@@ -181,11 +182,12 @@ struct StretchOfFace {
     const double membrane = strength * kCollarArea * face.weight;
     const double hold = kHold * face.holdWeight;
     const double t = std::max(0.0, (ratio - kCollarMean) * kRate), u = std::min(t, 1.0);
-    const double u3 = u * u * u;
-    const double curvature = t > 1 ? 5 / t : 20 * u3;
-    return {ratio, 0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * u3 * u * (u + 5 * (t - u)),
-            membrane * (ratio - 1) + 5 * hold * u3 * u * kRate,
-            membrane + hold * curvature * kRate * kRate};
+    const double beyond = t - u, u3 = u * u * u;
+    return {ratio,
+            0.5 * membrane * (ratio - 1) * (ratio - 1) + hold * u3 * u * u +
+                hold * beyond * (5 + 10 * beyond),
+            membrane * (ratio - 1) + 5 * hold * u3 * u * kRate + 20 * hold * beyond * kRate,
+            membrane + 20 * hold * u3 * kRate * kRate};
   }
 
   static double value(const Configuration& now, std::size_t f, double strength) {
