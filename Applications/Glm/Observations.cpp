@@ -77,7 +77,7 @@ io::VertexMap mapIn(const fs::path& file, Eigen::Index vertices, const std::stri
 }
 
 /// Reads one person's maps one after the other.
-void readMaps(const std::vector<fs::path>& files, const std::vector<Hemisphere>& hemispheres,
+void readMaps(const std::vector<fs::path>& files, const std::vector<MapSide>& hemispheres,
               const std::string& response, const std::vector<bool>& mask,
               std::span<double> values) {
   for (std::size_t h = 0; h < hemispheres.size(); ++h) {
@@ -110,7 +110,7 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
   }
   TriangleMesh whole;
   for (std::size_t h = 0; h < columns.size(); ++h) {
-    Hemisphere side;
+    MapSide side;
     side.first = o.places;
     if (s.surfaces.empty()) {
       side.count = io::readVertexMaps(files.front()[h]).front().values.size();
@@ -156,7 +156,7 @@ void readMask(const GlmSettings& s, Observations& o) {
   requireOneEach(s.masks, "mask", o);
   o.mask.assign(static_cast<std::size_t>(o.places), true);
   for (std::size_t h = 0; h < s.masks.size(); ++h) {
-    const Hemisphere& side = o.hemispheres[h];
+    const MapSide& side = o.hemispheres[h];
     const Eigen::VectorXd inside = io::readVertexNumbers(s.masks[h], side.count);
     for (Eigen::Index v = 0; v < side.count; ++v) {
       o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;

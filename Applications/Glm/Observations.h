@@ -16,7 +16,7 @@
 namespace explica::app {
 
 /// A surface that maps are on, and where its vertices stand among all places.
-struct Hemisphere {
+struct MapSide {
   std::string prefix;     ///< of its files: "hemi-L_", or empty if there is one surface
   std::string structure;  ///< "CortexLeft", "CortexRight", "Other"
   Eigen::Index first = 0, count = 0;
@@ -30,7 +30,7 @@ struct Observations {
   std::vector<std::string> leftOut;
   Eigen::Index places = 0;
   std::vector<std::string> placeNames;  ///< of regions; empty of maps
-  std::vector<Hemisphere> hemispheres;  ///< empty of regions
+  std::vector<MapSide> hemispheres;     ///< empty of regions
   std::optional<statistics::PlaceSurface> surface;
   std::vector<bool> mask;           ///< of places that are analysed
   statistics::PersonReader reader;  ///< of `people`

@@ -88,7 +88,7 @@ Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& v
   Json low = Json::array(), high = Json::array(), views = Json::object(), reports = Json::array();
   std::string digits;
   int first = 0;
-  for (const Hemisphere& side : o.hemispheres) {
+  for (const MapSide& side : o.hemispheres) {
     const auto places = placesOf(side.count, most);
     const auto vertices = o.surface->mesh.positions.middleRows(side.first, side.count);
     views[side.structure] = {{"first", first}, {"place", nearestPlaces(vertices, places)}};

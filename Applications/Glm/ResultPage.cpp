@@ -38,14 +38,14 @@ Size sizeOfViews(const GlmResults& r) {
 }
 
 struct ShownSide {
-  const Hemisphere* hemisphere;
+  const MapSide* hemisphere;
   TriangleMesh mesh;
   TriangleMesh inflated = {};
 };
 
 std::vector<ShownSide> sidesOf(const Observations& o) {
   std::vector<ShownSide> sides;
-  for (const Hemisphere& h : o.hemispheres) {
+  for (const MapSide& h : o.hemispheres) {
     ShownSide side{&h, {o.surface->mesh.positions.middleRows(h.first, h.count), {}}};
     const Faces& all = o.surface->mesh.faces;
     std::vector<std::int32_t> mine;

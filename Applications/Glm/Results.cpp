@@ -20,7 +20,7 @@ constexpr double kConfidence = 0.95;
 
 void writeMap(Context& context, const Observations& o, const std::string& name,
               const std::string& kind, const Eigen::VectorXd& values) {
-  for (const Hemisphere& side : o.hemispheres) {
+  for (const MapSide& side : o.hemispheres) {
     io::GiftiMapsWriter writer(context.output(side.prefix + name + "_" + kind + ".shape.gii"),
                                side.structure, 1);
     const Eigen::VectorXf part = values.segment(side.first, side.count).cast<float>();
@@ -57,7 +57,7 @@ std::string fileName(const std::string& contrast) {
   return name.empty() ? "contrast" : name;
 }
 
-const Hemisphere& hemisphereOf(const Observations& o, Eigen::Index place) {
+const MapSide& hemisphereOf(const Observations& o, Eigen::Index place) {
   std::size_t h = 0;
   while (place >= o.hemispheres[h].first + o.hemispheres[h].count) ++h;
   return o.hemispheres[h];
@@ -65,7 +65,7 @@ const Hemisphere& hemisphereOf(const Observations& o, Eigen::Index place) {
 
 std::string regionOf(const Observations& o, Eigen::Index place) {
   if (!o.placeNames.empty()) return o.placeNames[static_cast<std::size_t>(place)];
-  const Hemisphere& side = hemisphereOf(o, place);
+  const MapSide& side = hemisphereOf(o, place);
   return side.regions.empty() ? "" : side.regions[static_cast<std::size_t>(place - side.first)];
 }
 
@@ -100,7 +100,7 @@ std::string clusterTable(const Observations& o, const GlmResults& r) {
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     for (const auto& c : r.inferences[k].clusters) {
       const Eigen::Index peak = c.cluster.peak;
-      const Hemisphere& side = hemisphereOf(o, peak);
+      const MapSide& side = hemisphereOf(o, peak);
       const Eigen::Vector3d place = o.surface->mesh.positions.row(peak);
       text += row({r.contrasts[k].name, side.structure, c.negative ? "-" : "+",
                    std::to_string(c.cluster.vertices.size()), numberText(c.cluster.extent),
@@ -157,7 +157,7 @@ std::string regionTable(const Observations& o, const GlmResults& r) {
 std::string nameOfPlace(const Observations& o, Eigen::Index v) {
   const std::string region = regionOf(o, v);
   if (!o.placeNames.empty()) return region;
-  const Hemisphere& side = hemisphereOf(o, v);
+  const MapSide& side = hemisphereOf(o, v);
   return side.structure + " " + std::to_string(v - side.first) +
          (region.empty() ? "" : " (" + region + ")");
 }

@@ -62,7 +62,7 @@ void writeMaps(Context& context, const Observations& observations, const GlmResu
 [[nodiscard]] std::string regionOf(const Observations& observations, Eigen::Index place);
 /// A region's name, or a vertex's hemisphere, number and region.
 [[nodiscard]] std::string nameOfPlace(const Observations& observations, Eigen::Index place);
-[[nodiscard]] const Hemisphere& hemisphereOf(const Observations& observations, Eigen::Index place);
+[[nodiscard]] const MapSide& hemisphereOf(const Observations& observations, Eigen::Index place);
 
 /// "0.0123", "n/a" of what is not known.
 [[nodiscard]] std::string numberText(double value, int digits = 6);

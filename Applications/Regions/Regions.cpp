@@ -59,7 +59,7 @@ void declare(Declaration& d, RegionsSettings& s) {
 }
 
 /// What is known of one hemisphere.
-struct Hemisphere {
+struct MeasuredSide {
   std::string structure;
   Eigen::VectorXd areas, volumes, thickness, curvature;  ///< V; empty: not known
   std::vector<io::VertexMap> maps;
@@ -98,8 +98,8 @@ Eigen::VectorXd mapOf(const std::optional<fs::path>& path, std::optional<Eigen::
   return values;
 }
 
-Hemisphere readHemisphere(Context& context, const RegionsSettings& s, const std::string& side) {
-  Hemisphere found;
+MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const std::string& side) {
+  MeasuredSide found;
   found.structure = side == "L" ? "CortexLeft" : "CortexRight";
   const auto file = [&](const std::string& fsName, const std::string& ours) {
     return fileOf(context, s, side, fsName, ours);
@@ -176,7 +176,7 @@ void addMoments(AtlasTable& table, const std::string& name, const std::string& u
              [](const auto& r) { return r.deviation; });
 }
 
-AtlasTable measured(const Hemisphere& side, const io::LabelMap& labels) {
+AtlasTable measured(const MeasuredSide& side, const io::LabelMap& labels) {
   AtlasTable table{labels.name, {}, {}, {}};
   for (const io::LabelEntry& entry : labels.table) table.regions.push_back(entry.name);
   const auto areas = momentsOf(labels, side.areas, side.areas);
@@ -249,7 +249,7 @@ std::string stemOfAtlas(const std::string& path, const std::string& side) {
 
 Termination run(Context& context, const RegionsSettings& s) {
   const std::string side = sideOf(s);
-  const Hemisphere hemisphere = readHemisphere(context, s, side);
+  const MeasuredSide hemisphere = readHemisphere(context, s, side);
   std::vector<fs::path> atlases(s.atlases.begin(), s.atlases.end());
   const auto labels = io::readRegions(atlases, hemisphere.areas.size());
   auto step = context.step("regions");

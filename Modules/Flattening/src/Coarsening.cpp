@@ -4,9 +4,9 @@
 #include "Explica/Flattening/Coarsening.h"
 
 #include "Explica/Core/StopScope.h"
+#include "Explica/Flattening/StarRelaxation.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/Predicates.h"
-#include "StarRelaxation.h"
 
 #include <Eigen/Geometry>
 
@@ -299,18 +299,6 @@ double cross(const Plane& a, const Plane& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// The part of a convex polygon on the left of the line from a to b.
-std::vector<Plane> clipped(const std::vector<Plane>& polygon, const Plane& a, const Plane& b) {
-  std::vector<Plane> kept;
-  for (std::size_t n = 0; n < polygon.size(); ++n) {
-    const Plane &p = polygon[n], &q = polygon[(n + 1) % polygon.size()];
-    const double sp = cross(b - a, p - a), sq = cross(b - a, q - a);
-    if (sp >= 0) kept.push_back(p);
-    if ((sp > 0 && sq < 0) || (sp < 0 && sq > 0)) kept.push_back(p + sp / (sp - sq) * (q - p));
-  }
-  return kept;
-}
-
 Plane centroidOf(const std::vector<Plane>& polygon) {
   Plane sum = Plane::Zero(), mean = Plane::Zero();
   double area = 0;
@@ -354,30 +342,23 @@ std::vector<Plane> kernelOf(const std::vector<Plane>& ring) {
   }
   std::vector<Plane> kernel = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
   for (std::size_t n = 0; n < ring.size() && !kernel.empty(); ++n) {
-    kernel = clipped(kernel, ring[n], ring[(n + 1) % ring.size()]);
+    const Plane &a = ring[n], edge = ring[(n + 1) % ring.size()] - a;
+    kernel = clipped(kernel, [&](const Plane& p) { return cross(edge, p - a); });
   }
   return kernel;
 }
 
-/// A place from which the ring is seen where the kernel is too thin for its corners to be computed:
-/// beside the vertex that the removed one merged with, along the bisector of the angle that the
-/// ring has there.  The faces that join that vertex to the ring are positive, so near enough the
-/// ring is seen, though the angle may be of more than 180 degrees.
-std::optional<Plane> placeBeside(const std::vector<Plane>& ring, bool open, std::size_t centre) {
+/// Beside the vertex that the removed one merged with.
+std::optional<Plane> besideNeighbour(const std::vector<Plane>& ring, bool open,
+                                     std::size_t centre) {
   const Plane& from = ring[centre];
-  const auto wayTo = [&](std::size_t n) { return Plane(ring[(centre + n) % ring.size()] - from); };
-  double angle = 0;
-  for (std::size_t n = 1; n + 1 < ring.size(); ++n) {
-    const Plane a = wayTo(n), b = wayTo(n + 1);
-    angle += std::atan2(cross(a, b), a.dot(b));
-  }
-  const Plane way = Eigen::Rotation2Dd(angle / 2) * wayTo(1);
-  double share = 0.5;
-  for (int n = 0; n < kHalvings; ++n, share /= 2) {
-    const Plane tried = from + share * way;
-    if (seesRing(ring, open, tried)) return tried;
-  }
-  return {};
+  return placeBeside(
+      ring, centre, [&](const Plane& p) { return Plane(p - from); },
+      [](const Plane& a, const Plane& b) { return std::atan2(cross(a, b), a.dot(b)); },
+      [&](const Plane& way, double angle, double share) {
+        return Plane(from + share * Plane(Eigen::Rotation2Dd(angle) * way));
+      },
+      [&](const Plane& p) { return seesRing(ring, open, p); });
 }
 
 /// Place of a rim vertex: on the segment from the first to the last of its ring, as near as
@@ -497,7 +478,7 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
     }
     place = rimPlace(ring, wanted);
     if (!seesRing(ring, true, place)) {
-      const auto beside = placeBeside(ring, true, centre);
+      const auto beside = besideNeighbour(ring, true, centre);
       if (!beside) return false;
       place = *beside;
     }
@@ -518,7 +499,7 @@ bool Insertion::insert(const Removal& removal, FlatPositions& flat) {
     const Plane middle = kernel.size() < 3 ? ring.front() : centroidOf(kernel);
     place = seesRing(ring, false, mean) ? Plane((mean + middle) / 2) : middle;
     if (!seesRing(ring, false, place)) {
-      const auto beside = placeBeside(ring, false, 0);
+      const auto beside = besideNeighbour(ring, false, 0);
       if (!beside) return false;
       place = *beside;
     }

@@ -4,7 +4,6 @@
 #include "Explica/Flattening/MapEnergy.h"
 
 #include "Explica/Core/Parallel.h"
-#include "StarRelaxation.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,24 +1,15 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "StarRelaxation.h"
-
-#include <Eigen/LU>
+#include "Explica/Flattening/StarRelaxation.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::flattening {
 namespace {
 
 using Complex = std::complex<double>;
 using Plane = Eigen::Vector2d;
-
-struct Terms {
-  double value = 0;
-  Plane gradient = Plane::Zero();
-  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-};
 
 Plane rowOf(Complex weight, Complex direction) {
   const Complex w = weight * std::conj(direction);
@@ -27,9 +18,9 @@ Plane rowOf(Complex weight, Complex direction) {
 
 /// Value and, if wanted, derivatives by the moving vertex; each face's Hessian made positive by
 /// leaving out what is negative on the diagonal.
-Terms evaluate(const std::vector<StarFace>& star, double areaWeight, const Plane& place,
-               bool derivatives) {
-  Terms terms;
+StarTerms evaluate(const std::vector<StarFace>& star, double areaWeight, const Plane& place,
+                   bool derivatives) {
+  StarTerms terms;
   for (const StarFace& face : star) {
     const std::array<Complex, 3> z = {Complex(place.x(), place.y()),
                                       Complex(face.second.x(), face.second.y()),
@@ -94,24 +85,15 @@ RestFace restFace(const std::array<double, 3>& lengths, double smallestHeight, b
   return face;
 }
 
-Plane relaxedPlace(const std::vector<StarFace>& star, double areaWeight, Plane place,
-                   int maxSteps) {
-  for (int n = 0; n < maxSteps; ++n) {
-    const Terms terms = evaluate(star, areaWeight, place, true);
-    const Plane step = -(terms.hessian.inverse() * terms.gradient);
-    const double promised = -terms.gradient.dot(step);
-    if (!(promised > kEnoughOfStar * terms.value)) break;
-    double share = 1;
-    bool moved = false;
-    for (int halving = 0; halving < 20 && !moved; ++halving, share /= 2) {
-      const Plane tried = place + share * step;
-      if (evaluate(star, areaWeight, tried, false).value >= terms.value) continue;
-      place = tried;
-      moved = true;
-    }
-    if (!moved) break;
-  }
-  return place;
+Plane relaxedPlace(const std::vector<StarFace>& star, double areaWeight, const Plane& place) {
+  return relaxedBySteps(
+      place,
+      [&](const Plane& at, bool derivatives) {
+        return evaluate(star, areaWeight, at, derivatives);
+      },
+      [](const Plane& from, const Plane& step, double share) -> Plane {
+        return from + share * step;
+      });
 }
 
 }  // namespace explica::flattening

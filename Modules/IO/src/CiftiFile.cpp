@@ -4,6 +4,7 @@
 #include "Explica/IO/CiftiFile.h"
 
 #include "Bytes.h"
+#include "GiftiFormat.h"
 #include "Xml.h"
 
 #include "Explica/Core/WholeFile.h"
@@ -76,21 +77,6 @@ std::string openMap(Kind kind, const std::string& more = {}) {
 
 std::string namedMap(const std::string& name, const std::string& table = {}) {
   return "<NamedMap>\n<MapName>" + escapedXml(name) + "</MapName>\n" + table + "</NamedMap>\n";
-}
-
-std::string labelTable(const std::vector<LabelEntry>& table) {
-  std::string text = "<LabelTable>\n";
-  for (const LabelEntry& entry : table) {
-    text += "<Label Key=\"" + std::to_string(entry.key) + "\"";
-    const char* channels[] = {"Red", "Green", "Blue", "Alpha"};
-    for (std::size_t c = 0; c < 4; ++c) {
-      text += std::string(" ") + channels[c] + "=\"";
-      appendNumber(text, entry.colour[c]);
-      text += "\"";
-    }
-    text += ">" + escapedXml(entry.name) + "</Label>\n";
-  }
-  return text + "</LabelTable>\n";
 }
 
 void check(const std::vector<const CiftiStructure*>& structures) {
@@ -245,7 +231,7 @@ CiftiFile ciftiLabels(const std::vector<CiftiLabels>& parts) {
   entries.reserve(table.size());
   for (const auto& [key, entry] : table) entries.push_back(entry);
   const std::string maps = openMap(Kind::Labels) +
-                           namedMap(parts.front().labels.name, labelTable(entries)) +
+                           namedMap(parts.front().labels.name, labelTableXml(entries)) +
                            "</MatrixIndicesMap>\n";
   return fileOf(Kind::Labels, 1, document(maps, brainModels(structures)), std::move(values), 1);
 }

@@ -13,7 +13,6 @@
 
 #include <Eigen/LU>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -577,22 +576,25 @@ void GiftiMapsWriter::finish() {
   state_->file.commit();
 }
 
+std::string labelTableXml(const std::vector<LabelEntry>& table) {
+  std::string text = "<LabelTable>\n";
+  for (const LabelEntry& entry : table) {
+    text += "<Label Key=\"" + std::to_string(entry.key) + "\"";
+    const char* channels[] = {"Red", "Green", "Blue", "Alpha"};
+    for (std::size_t c = 0; c < 4; ++c) {
+      text += std::string(" ") + channels[c] + "=\"";
+      appendNumber(text, entry.colour[c]);
+      text += "\"";
+    }
+    text += ">" + escapedXml(entry.name) + "</Label>\n";
+  }
+  return text + "</LabelTable>\n";
+}
+
 void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
                      const std::string& structure) {
   std::set<Label> known;
-  std::string table = "<LabelTable>\n";
-  for (const LabelEntry& entry : labels.table) {
-    known.insert(entry.key);
-    table += "<Label Key=\"" + std::to_string(entry.key) + "\"";
-    const char* channels[] = {"Red", "Green", "Blue", "Alpha"};
-    for (std::size_t c = 0; c < 4; ++c) {
-      table += std::string(" ") + channels[c] + "=\"";
-      appendNumber(table, entry.colour[c]);
-      table += "\"";
-    }
-    table += ">" + escapedXml(entry.name) + "</Label>\n";
-  }
-  table += "</LabelTable>\n";
+  for (const LabelEntry& entry : labels.table) known.insert(entry.key);
   std::vector<std::int32_t> keys(static_cast<std::size_t>(labels.keys.size()));
   for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
     if (!known.contains(labels.keys[v])) {
@@ -601,7 +603,8 @@ void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
     }
     keys[v] = labels.keys[v];
   }
-  std::string text = opening(1, {{"AnatomicalStructurePrimary", structure}}, table);
+  std::string text =
+      opening(1, {{"AnatomicalStructurePrimary", structure}}, labelTableXml(labels.table));
   appendArray(text, {"NIFTI_INTENT_LABEL",
                      "NIFTI_TYPE_INT32",
                      {labels.keys.size()},

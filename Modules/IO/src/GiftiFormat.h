@@ -34,6 +34,9 @@ struct GiftiFile {
 [[nodiscard]] bool looksLikeGifti(ByteView bytes);
 [[nodiscard]] GiftiFile parseGifti(const std::filesystem::path& path, ByteView bytes);
 
+/// The table as GIFTI and CIFTI have it.
+[[nodiscard]] std::string labelTableXml(const std::vector<LabelEntry>& table);
+
 [[nodiscard]] LoadedSurface readGiftiSurface(const std::filesystem::path& path, ByteView bytes,
                                              const SurfaceReadOptions& options);
 [[nodiscard]] std::vector<VertexMap> readGiftiMaps(const std::filesystem::path& path,

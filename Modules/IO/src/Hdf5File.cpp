@@ -3,11 +3,6 @@
 
 #include "Hdf5File.h"
 
-#include "ByteSource.h"
-#include "MeshBuilder.h"
-
-#include <algorithm>
-
 namespace explica::io {
 namespace {
 
@@ -154,46 +149,25 @@ void Hdf5File::readSuperblock() {
   root_ = cursor.take<std::uint64_t>();
 }
 
-void Hdf5File::addOldMessages(ByteView block, std::vector<Message>& messages,
-                              std::vector<ByteView>& blocks) const {
-  constexpr std::size_t kHead = 8;  // bytes
-  ByteCursor cursor(path_, block, false);
-  while (cursor.left() >= kHead) {
-    Message message;
-    message.type = cursor.take<std::uint16_t>();
-    const auto size = cursor.take<std::uint16_t>();
-    message.flags = cursor.take<std::uint8_t>();
-    static_cast<void>(cursor.view(3));
-    message.data = cursor.view(size);
-    if (message.type == kContinuation) {
-      ByteCursor where(path_, message.data, false);
-      const auto address = where.take<std::uint64_t>();
-      const auto length = where.take<std::uint64_t>();
-      blocks.push_back(at(address).view(length));
-    }
-    messages.push_back(message);
-  }
-}
-
-void Hdf5File::addNewMessages(ByteView block, bool ordered, std::vector<Message>& messages,
-                              std::vector<ByteView>& blocks) const {
-  const std::size_t head = ordered ? 6 : 4;
+void Hdf5File::addMessages(ByteView block, bool old, bool ordered, std::vector<Message>& messages,
+                           std::vector<ByteView>& blocks) const {
+  const std::size_t head = old ? 8 : ordered ? 6 : 4;  // bytes
   ByteCursor cursor(path_, block, false);
   while (cursor.left() >= head) {
     Message message;
-    message.type = cursor.take<std::uint8_t>();
+    message.type = old ? cursor.take<std::uint16_t>() : cursor.take<std::uint8_t>();
     const auto size = cursor.take<std::uint16_t>();
     message.flags = cursor.take<std::uint8_t>();
-    if (ordered) static_cast<void>(cursor.take<std::uint16_t>());
+    static_cast<void>(cursor.view(old ? 3 : ordered ? 2 : 0));
     message.data = cursor.view(size);
     if (message.type == kContinuation) {
       ByteCursor where(path_, message.data, false);
       const auto address = where.take<std::uint64_t>();
       const auto length = where.take<std::uint64_t>();
-      constexpr std::size_t kAround = 8;  // bytes: "OCHK" and a checksum
+      const std::size_t around = old ? 0 : 8;  // bytes: "OCHK" and a checksum
       const ByteView whole = at(address).view(length);
-      if (length < kAround) failToRead(path_, "is damaged: a part of a header is too short");
-      blocks.push_back(whole.subspan(4, length - kAround));
+      if (length < around) failToRead(path_, "is damaged: a part of a header is too short");
+      blocks.push_back(whole.subspan(around / 2, length - around));
     }
     messages.push_back(message);
   }
@@ -231,11 +205,7 @@ std::vector<Hdf5File::Message> Hdf5File::messagesOf(std::uint64_t address) const
     const ByteView block = blocks[b];
     taken += block.size() + 1;
     if (taken > bytes_.size()) failToRead(path_, "is damaged: a header does not end");
-    if (old) {
-      addOldMessages(block, messages, blocks);
-    } else {
-      addNewMessages(block, ordered, messages, blocks);
-    }
+    addMessages(block, old, ordered, messages, blocks);
   }
   return messages;
 }

@@ -56,10 +56,8 @@ class Hdf5File {
   [[nodiscard]] ByteCursor at(std::uint64_t address) const;
   void readSuperblock();
   [[nodiscard]] std::vector<Message> messagesOf(std::uint64_t address) const;
-  void addOldMessages(ByteView block, std::vector<Message>& messages,
-                      std::vector<ByteView>& blocks) const;
-  void addNewMessages(ByteView block, bool ordered, std::vector<Message>& messages,
-                      std::vector<ByteView>& blocks) const;
+  void addMessages(ByteView block, bool old, bool ordered, std::vector<Message>& messages,
+                   std::vector<ByteView>& blocks) const;
   [[nodiscard]] std::optional<std::uint64_t> addressOf(const std::string& place) const;
   [[nodiscard]] std::string inGlobalHeap(std::uint64_t address, std::uint32_t index,
                                          std::uint32_t length) const;

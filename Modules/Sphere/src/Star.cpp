@@ -3,26 +3,13 @@
 
 #include "Star.h"
 
+#include "Explica/Flattening/StarRelaxation.h"
 #include "Explica/Geometry/SphereLocator.h"
-
-#include <Eigen/LU>
 
 #include <cmath>
 
 namespace explica::sphere {
 namespace {
-
-/// The part of a convex cone, given by its edges in order, in front of a plane through the origin.
-std::vector<Vector> clipped(const std::vector<Vector>& cone, const Vector& normal) {
-  std::vector<Vector> kept;
-  for (std::size_t n = 0; n < cone.size(); ++n) {
-    const Vector &p = cone[n], &q = cone[(n + 1) % cone.size()];
-    const double sp = normal.dot(p), sq = normal.dot(q);
-    if (sp >= 0) kept.push_back(p);
-    if ((sp > 0 && sq < 0) || (sp < 0 && sq > 0)) kept.push_back(p + sp / (sp - sq) * (q - p));
-  }
-  return kept;
-}
 
 /// The directions from which the whole ring is seen, within some 80 degrees of the first neighbour:
 /// a convex cone.
@@ -34,8 +21,8 @@ std::vector<Vector> kernelOf(const Ring& ring) {
     cone.push_back(ring.front() + kWide * (a * frame.col(0) + b * frame.col(1)));
   }
   for (std::size_t n = 0; n < ring.size() && !cone.empty(); ++n) {
-    const Vector& next = ring[(n + 1) % ring.size()];
-    cone = clipped(cone, ring[n].cross(next - ring[n]));
+    const Vector normal = ring[n].cross(ring[(n + 1) % ring.size()] - ring[n]);
+    cone = flattening::clipped(cone, [&](const Vector& v) { return normal.dot(v); });
   }
   return cone;
 }
@@ -61,36 +48,23 @@ Vector middleOf(std::vector<Vector> cone) {
   return area > 0 ? Vector(mean + sum / (3 * area)) : mean;
 }
 
-/// Beside the first neighbour, along the bisector of the angle that the ring has there.  The faces
-/// that join it to the ring are positive, so near enough the ring is seen, though the angle may be
-/// of more than 180 degrees.
-std::optional<Point> placeBeside(const Ring& ring) {
+/// Beside the first neighbour.
+std::optional<Point> besideNeighbour(const Ring& ring) {
   const Point& from = ring.front();
-  const auto along = [&](const Point& p) -> Vector { return p - from.dot(p) * from; };
-  double angle = 0;
-  for (std::size_t n = 1; n + 1 < ring.size(); ++n) {
-    const Vector a = along(ring[n]), b = along(ring[n + 1]);
-    angle += std::atan2(from.dot(a.cross(b)), a.dot(b));
-  }
-  const Vector first = along(ring[1]);
-  const Vector way = std::cos(angle / 2) * first + std::sin(angle / 2) * from.cross(first);
-  double share = 0.5;
-  for (int n = 0; n < flattening::kHalvings; ++n, share /= 2) {
-    const Point tried = (from + share * way).normalized();
-    if (seesRing(ring, tried)) return tried;
-  }
-  return {};
+  return flattening::placeBeside(
+      ring, 0, [&](const Point& p) { return Vector(p - from.dot(p) * from); },
+      [&](const Vector& a, const Vector& b) { return std::atan2(from.dot(a.cross(b)), a.dot(b)); },
+      [&](const Vector& first, double angle, double share) {
+        const Vector way = std::cos(angle) * first + std::sin(angle) * from.cross(first);
+        return Point((from + share * way).normalized());
+      },
+      [&](const Point& p) { return seesRing(ring, p); });
 }
 
-struct StarTerms {
-  double value = 0;
-  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
-};
-
-StarTerms evaluate(const std::vector<RestFace>& rest, const Ring& ring, const MapWeights& weights,
-                   const Point& place, const TangentFrame& frame) {
-  StarTerms terms;
+flattening::StarTerms evaluate(const std::vector<RestFace>& rest, const Ring& ring,
+                               const MapWeights& weights, const Point& place,
+                               const TangentFrame& frame) {
+  flattening::StarTerms terms;
   for (std::size_t n = 0; n < ring.size(); ++n) {
     const SphereFace face = sphereFace(rest[n], {place, ring[n], ring[(n + 1) % ring.size()]});
     const SphereDensity psi = sphereDensity(face.squaredJacobian, face.areaRatio, weights);
@@ -124,28 +98,17 @@ std::optional<Point> placeInside(const Ring& ring) {
     const Point middle = middleOf(kernel).normalized();
     if (middle.allFinite() && seesRing(ring, middle)) return middle;
   }
-  return placeBeside(ring);
+  return besideNeighbour(ring);
 }
 
 Point relaxedPlace(const std::vector<RestFace>& rest, const Ring& ring, const MapWeights& weights,
-                   Point place, int maxSteps) {
-  for (int n = 0; n < maxSteps; ++n) {
-    const TangentFrame frame = tangentFrame(place);
-    const StarTerms terms = evaluate(rest, ring, weights, place, frame);
-    if (!std::isfinite(terms.value)) break;
-    const Eigen::Vector2d step = -(terms.hessian.inverse() * terms.gradient);
-    if (!(-terms.gradient.dot(step) > flattening::kEnoughOfStar * terms.value)) break;
-    double share = 1;
-    bool moved = false;
-    for (int halving = 0; halving < 20 && !moved; ++halving, share /= 2) {
-      const Point tried = (place + share * frame * step).normalized();
-      if (!(evaluate(rest, ring, weights, tried, frame).value < terms.value)) continue;
-      place = tried;
-      moved = true;
-    }
-    if (!moved) break;
-  }
-  return place;
+                   const Point& place) {
+  return flattening::relaxedBySteps(
+      place,
+      [&](const Point& at, bool) { return evaluate(rest, ring, weights, at, tangentFrame(at)); },
+      [](const Point& from, const Eigen::Vector2d& step, double share) -> Point {
+        return (from + share * tangentFrame(from) * step).normalized();
+      });
 }
 
 bool insert(const flattening::Removal& removal, double scale, const MapWeights& weights,

@@ -24,7 +24,7 @@ using Ring = std::vector<Point>;
 /// @param rest   the faces, corner 0 the vertex, corner 1 neighbour n, corner 2 the next
 /// @param place  sees the ring
 [[nodiscard]] Point relaxedPlace(const std::vector<RestFace>& rest, const Ring& ring,
-                                 const MapWeights& weights, Point place, int maxSteps = 10);
+                                 const MapWeights& weights, const Point& place);
 
 /// Puts a vertex back that flattening::coarsen() took out.
 /// @param scale  of the lengths of the removal, so that the surface has the area of the unit sphere

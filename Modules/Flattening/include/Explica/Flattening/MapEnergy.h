@@ -12,10 +12,9 @@ namespace explica::flattening {
 
 using FlatPositions = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  ///< V x 2, mm
 
-// What searches for better maps, of the plane and of the sphere, have in common.
-inline constexpr double kShareOfWay = 0.8;     ///< to the first face without area, in one step
-inline constexpr double kEnoughOfStar = 1e-2;  ///< of its energy: neighbours will move it again
-inline constexpr int kHalvings = 50;           ///< down to the rounding of the coordinates
+/// Of the way to the first face without area, in one step: of searches in the plane and on the
+/// sphere.
+inline constexpr double kShareOfWay = 0.8;
 
 /// A triangulated surface known by its edge lengths alone.
 struct IntrinsicMesh {
