@@ -80,7 +80,8 @@ registration::HeadRegistration registered(Context& context, const SegmentSetting
                                           const Volume<float>& image,
                                           const registration::Template& head, bool stripped) {
   if (!s.templateTransform) {
-    return registration::registerHead(image, head, stripped, {}, context.monitor());
+    return registration::registerHead(
+        image, head, stripped, segmentation::limitNamed("registration").low, {}, context.monitor());
   }
   io::StoredTransform stored = io::readTransform(*s.templateTransform);
   return registration::reuseRegistration(image, head, stripped,
@@ -132,6 +133,7 @@ Head fitTemplate(Context& context, Judge& judge, const SegmentSettings& s,
   judge.flag("registration", found.agreement.correlation);
   const double stretch = registration::stretchOf(found.transform.affine);
   summary.stretch = stretch;
+  summary.turn = registration::turnOf(found.transform.affine);
   judge.flag("stretch", stretch);
   Head head;
   head.mask = std::move(mask);

@@ -240,6 +240,21 @@ TEST_F(WholeHead, UpsideDownIsFlaggedByItsRegistrationAlone) {
   EXPECT_EQ(flag["value"], numberOf(folder_ / "segment", "registration_correlation"));
 }
 
+TEST_F(WholeHead, AHeadThatLiesOnItsSideIsFound) {
+  const fs::path image = folder_ / "side.nii.gz";
+  writeCoarse(image, asItIs, "ch2.nii.gz");
+  Volume<float> head = io::readScalars(image).volume;
+  const Eigen::AngleAxisd turn(80 * kPi / 180, Vector(1, 2, -2).normalized());
+  head.grid.direction = turn * head.grid.direction;
+  head.grid.origin = turn * head.grid.origin;
+  io::writeVolume(image, head);
+  const auto run = patiently({"segment", image, "--out", folder_ / "segment"});
+  EXPECT_EQ(run.exitCode, 0) << run;
+  EXPECT_GT(numberOf(folder_ / "segment", "registration_correlation"), 0.95);
+  EXPECT_NEAR(numberOf(folder_ / "segment", "registration_turn"), 80, 1);
+  EXPECT_EQ(readJson(folder_ / "segment/summary.json")["verdict"], "look");
+}
+
 TEST_F(WholeHead, AProtonDensityImageIsRefusedByItsFluid) {
   const fs::path image = folder_ / "pd.nii.gz";
   writeCoarse(image, asItIs);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace explica::registration {
@@ -286,31 +287,9 @@ std::array<Point, 2> centresOf(const std::vector<Point>& bright, const Vector& u
   return {sums[0] / static_cast<double>(bright.size()), sums[1] / std::max(high, 1.0)};
 }
 
-/// Starts about each place where the brain's centre may lie, for a head that is turned.
-std::vector<Found> startsOf(const Level& level, const std::vector<Point>& bright, const Point& from,
-                            const Eigen::Matrix3d& turn, double radius, double unit) {
-  std::vector<Found> starts;
-  for (const Point& centre : centresOf(bright, turn.col(2), 2 * radius)) {
-    for (const double up : {-24.0, 0.0, 24.0}) {
-      for (const double front : {-16.0, 0.0, 16.0}) {
-        for (const double tilt : {-0.3, 0.0, 0.3}) {
-          Found start;
-          start.turn = turn;
-          start.parameters.head<3>() = centre + turn * Vector(0, front * unit, up * unit);
-          start.parameters[3] = tilt;
-          start.value = information(level, mapOf(start.parameters, turn, from, Point::Zero()));
-          starts.push_back(start);
-        }
-      }
-    }
-  }
-  return starts;
-}
-
-/// Rotations by up to 90 degrees, so far apart; climbing finds the way from 30 degrees and more.
-constexpr double kTurn = kPi / 4;
-
+/// Rotations by 45 to 90 degrees, 45 degrees apart; climbing finds the way from 30 and more.
 std::vector<Eigen::Matrix3d> turns() {
+  constexpr double kTurn = kPi / 4;
   constexpr int kMost = 2;
   std::vector<Eigen::Matrix3d> found;
   for (int i = -kMost; i <= kMost; ++i) {
@@ -324,6 +303,125 @@ std::vector<Eigen::Matrix3d> turns() {
   }
   return found;
 }
+
+/// A ball with the centre and the volume of a region.
+struct Ball {
+  Point centre = Point::Zero();
+  double radius = 0;
+};
+
+Ball ballOf(const Volume<float>& region) {
+  Ball ball;
+  double count = 0;
+  for (std::size_t v = 0; v < region.size(); ++v) {
+    if (!(region[v] > 0.5f)) continue;
+    const auto [i, j, k] = region.grid.subscripts(v);
+    ball.centre += region.grid.toWorld(Vector(i, j, k));
+    count += 1;
+  }
+  if (count == 0) throw InvalidInput("template: its brain mask is empty");
+  ball.centre /= count;
+  ball.radius = std::cbrt(0.75 / kPi * count * region.grid.voxelVolume());
+  return ball;
+}
+
+/// Finds the affine map of a template onto an image from many starts.  Lengths follow from the
+/// region's size.
+class AffineSearch {
+ public:
+  AffineSearch(const Volume<float>& image, const Volume<float>& inTemplate,
+               const Volume<float>& region)
+      : region_(region),
+        ball_(ballOf(region)),
+        unit_(ball_.radius / 80),  // of a human brain with its surroundings
+        fine_(inCubes(image, kImageShare * 4 * unit_)),
+        fineTemplate_(inCubes(inTemplate, 4 * unit_)),
+        level_(levelAt(8)),
+        bright_(brightOf(level_.image)) {}
+
+  /// The best from starts that are not turned.
+  [[nodiscard]] Found upright() const {
+    return bestOf(startsAt(level_, Eigen::Matrix3d::Identity()));
+  }
+
+  /// The best from starts that are turned.
+  [[nodiscard]] Found turned() const {
+    const Level coarse = levelAt(12);
+    const std::vector<Eigen::Matrix3d> all = turns();
+    std::vector<Found> found(all.size());
+    parallelFor(all.size(), 1, [&](std::size_t t) {
+      const std::vector<Found> here = startsAt(coarse, all[t]);
+      found[t] = climbed(coarse, *std::ranges::max_element(here, {}, &Found::value));
+    });
+    return bestOf(std::move(found));
+  }
+
+  /// The best by all parameters near what was found, at finer levels.
+  [[nodiscard]] Found refined(Found found, const Monitor& monitor) const {
+    found = climbed(level_, found, allDirections(0.7), 5, 1e-5);
+    for (const double spacing : {6.0, 4.0}) {
+      monitor.progress(spacing > 5 ? 0.6 : 0.8, "affine registration");
+      found = climbed(levelAt(spacing), found, allDirections(0.25), 5, 1e-5);
+    }
+    return found;
+  }
+
+  [[nodiscard]] Eigen::Affine3d affineOf(const Found& found) const {
+    return mapOf(found.parameters, found.turn, ball_.centre, Point::Zero());
+  }
+
+ private:
+  [[nodiscard]] Level levelAt(double spacing) const {
+    return makeLevel(fine_, fineTemplate_, region_, spacing * unit_);
+  }
+
+  /// Starts about each place where the brain's centre may lie, for a head that is turned so.
+  [[nodiscard]] std::vector<Found> startsAt(const Level& level, const Eigen::Matrix3d& turn) const {
+    std::vector<Found> starts;
+    for (const Point& centre : centresOf(bright_, turn.col(2), 2 * ball_.radius)) {
+      for (const double up : {-24.0, 0.0, 24.0}) {
+        for (const double front : {-16.0, 0.0, 16.0}) {
+          for (const double tilt : {-0.3, 0.0, 0.3}) {
+            Found start;
+            start.turn = turn;
+            start.parameters.head<3>() = centre + turn * Vector(0, front * unit_, up * unit_);
+            start.parameters[3] = tilt;
+            start.value = information(level, affineOf(start));
+            starts.push_back(start);
+          }
+        }
+      }
+    }
+    return starts;
+  }
+
+  [[nodiscard]] Found climbed(const Level& level, const Found& start,
+                              std::vector<Parameters> directions = rigidAndScale(1), int sweeps = 4,
+                              double tolerance = 1e-4) const {
+    Parameters scale = Parameters::Ones();
+    scale.head<3>().setConstant(unit_);
+    for (Parameters& d : directions) d = d.cwiseProduct(scale);
+    return climb(level, ball_.centre, Point::Zero(), start, std::move(directions), sweeps,
+                 tolerance);
+  }
+
+  /// The best of some starts, climbed from the most promising ones.
+  [[nodiscard]] Found bestOf(std::vector<Found> starts) const {
+    constexpr std::size_t kTried = 6;
+    std::ranges::stable_sort(starts, std::ranges::greater{}, &Found::value);
+    starts.resize(std::min(starts.size(), kTried));
+    for (Found& start : starts) start = climbed(level_, start);
+    return *std::ranges::max_element(starts, {}, &Found::value);
+  }
+
+  const Volume<float>& region_;
+  Ball ball_;
+  double unit_;  ///< for 1 mm of a human head
+  // The finest that any level needs, so that the volumes are smoothed at full size once only.
+  Volume<float> fine_, fineTemplate_;
+  Level level_;
+  std::vector<Point> bright_;
+};
 
 /// Refuses an image that shows too little of a head for both to be brought together.
 void requireSeen(const Volume<float>& head, const Grid& grid) {
@@ -348,65 +446,13 @@ void requireSeen(const Volume<float>& head, const Grid& grid) {
 }  // namespace
 
 AffineRegistration registerAffine(const Volume<float>& image, const Volume<float>& inTemplate,
-                                  const Volume<float>& region, const Monitor& monitor) {
+                                  const Volume<float>& region, Pose pose, const Monitor& monitor) {
   monitor.progress(0, "affine registration");
-  Point from = Point::Zero();
-  double count = 0;
-  for (std::size_t v = 0; v < region.size(); ++v) {
-    if (!(region[v] > 0.5f)) continue;
-    const auto [i, j, k] = region.grid.subscripts(v);
-    from += region.grid.toWorld(Vector(i, j, k));
-    count += 1;
-  }
-  if (count == 0) throw InvalidInput("template: its brain mask is empty");
-  from /= count;
-  // A ball of the region's volume says how large its steps are.
-  const double radius = std::cbrt(0.75 / kPi * count * region.grid.voxelVolume());
-  const double unit = radius / 80;  // of a human brain with its surroundings
-
-  // The finest that any level needs, so that the volumes are smoothed at full size once only.
-  const Volume<float> fine = inCubes(image, kImageShare * 4 * unit);
-  const Volume<float> fineTemplate = inCubes(inTemplate, 4 * unit);
-  Level level = makeLevel(fine, fineTemplate, region, 8 * unit);
-  const std::vector<Point> bright = brightOf(level.image);
-  Parameters scale = Parameters::Ones();
-  scale.head<3>().setConstant(unit);
-  const auto scaled = [&](std::vector<Parameters> directions) {
-    for (Parameters& d : directions) d = d.cwiseProduct(scale);
-    return directions;
-  };
-  const auto climbed = [&](const Level& on, const Found& start) {
-    return climb(on, from, Point::Zero(), start, scaled(rigidAndScale(1)), 4, 1e-4);
-  };
-  // The best of some starts, climbed from the most promising ones.
-  const auto bestOf = [&](std::vector<Found> some) {
-    std::ranges::stable_sort(some, std::ranges::greater{}, &Found::value);
-    some.resize(std::min<std::size_t>(some.size(), 6));
-    for (Found& start : some) start = climbed(level, start);
-    return *std::ranges::max_element(some, {}, &Found::value);
-  };
-  Found best = bestOf(startsOf(level, bright, from, Eigen::Matrix3d::Identity(), radius, unit));
-  monitor.progress(0.3, "affine registration");
-  // A header may be wrong, or the head turned in it: what is found so counts where it is turned.
-  const Level coarse = makeLevel(fine, fineTemplate, region, 12 * unit);
-  const std::vector<Eigen::Matrix3d> all = turns();
-  std::vector<Found> turned(all.size());
-  parallelFor(all.size(), 1, [&](std::size_t t) {
-    const std::vector<Found> here = startsOf(coarse, bright, from, all[t], radius, unit);
-    turned[t] = climbed(coarse, *std::ranges::max_element(here, {}, &Found::value));
-  });
-  const Found other = bestOf(std::move(turned));
-  const Eigen::Affine3d map = mapOf(other.parameters, other.turn, from, Point::Zero());
-  const bool isTurned = Eigen::AngleAxisd(map.rotation()).angle() > 0.5 * kTurn;
-  if (isTurned && other.value > best.value) best = other;
+  const AffineSearch search(image, inTemplate, region);
+  const Found start = pose == Pose::Turned ? search.turned() : search.upright();
   monitor.progress(0.4, "affine registration");
-  best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.7)), 5, 1e-5);
-  for (const double spacing : {6.0, 4.0}) {
-    monitor.progress(spacing > 5 ? 0.6 : 0.8, "affine registration");
-    level = makeLevel(fine, fineTemplate, region, spacing * unit);
-    best = climb(level, from, Point::Zero(), best, scaled(allDirections(0.25)), 5, 1e-5);
-  }
-  return {mapOf(best.parameters, best.turn, from, Point::Zero()), best.value};
+  const Found best = search.refined(start, monitor);
+  return {search.affineOf(best), best.value};
 }
 
 Eigen::Isometry3d registerNearby(const Volume<float>& image, const Volume<float>& second,

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 namespace explica::registration {
@@ -21,6 +22,7 @@ namespace {
 constexpr double kHumanBrain = 1.7e6;   // mm^3, with fluid, as Colin27 has it
 constexpr double kAround = 12;          // mm of head around a human brain that affine maps look at
 constexpr double kNearby = 5;           // mm around it that the deformation looks at
+constexpr double kMostTurn = 120;       // degrees: 90, and as templates' heads are held
 constexpr double kMostStretch = 10;     // of a transform that may bring a head onto another
 constexpr double kMostOfABrain = 1.55;  // times the template's brain: above, there is a skull
 
@@ -120,17 +122,33 @@ bool looksStripped(const Volume<float>& image, const Template& head) {
 }
 
 HeadRegistration registerHead(const Volume<float>& image, const Template& head, bool stripped,
-                              const DeformationOptions& options, const Monitor& monitor) {
+                              double enough, const DeformationOptions& options,
+                              const Monitor& monitor) {
   const Pattern pattern(head, stripped);
+  const auto affine = [&](Pose pose) {
+    return registerAffine(image, pattern.like, pattern.around(kAround), pose, monitor);
+  };
+  const auto deformed = [&](const AffineRegistration& start) {
+    return registerDeformation(image, pattern.like, pattern.around(kNearby),
+                               start.templateToImage.inverse(), pattern.scaled(options), monitor);
+  };
+  AffineRegistration start = affine(Pose::Upright);
+  DeformationResult result = deformed(start);
+  if (result.agreement.correlation < enough) {
+    const AffineRegistration turned = affine(Pose::Turned);
+    const bool isUpsideDown = turnOf(turned.templateToImage) > kMostTurn;
+    if (!isUpsideDown && turned.information > start.information) {
+      DeformationResult other = deformed(turned);
+      if (other.agreement.correlation >= enough) {
+        start = turned;
+        result = std::move(other);
+      }
+    }
+  }
   HeadRegistration found;
-  const AffineRegistration affine =
-      registerAffine(image, pattern.like, pattern.around(kAround), monitor);
-  found.information = affine.information;
-  DeformationResult deformed =
-      registerDeformation(image, pattern.like, pattern.around(kNearby),
-                          affine.templateToImage.inverse(), pattern.scaled(options), monitor);
-  found.transform = std::move(deformed.transform);
-  found.agreement = deformed.agreement;
+  found.information = start.information;
+  found.transform = std::move(result.transform);
+  found.agreement = result.agreement;
   found.brain = pulled(pattern.mask, found.transform, image.grid);
   found.fluidOfWhite = fluidOfWhite(image, head.brain, found.transform);
   return found;

@@ -42,6 +42,10 @@ double stretchOf(const Eigen::Affine3d& affine) {
   return stretches[0] / stretches[2];
 }
 
+double turnOf(const Eigen::Affine3d& affine) {
+  return Eigen::AngleAxisd(affine.rotation()).angle() * 180 / kPi;
+}
+
 Point HeadTransform::operator()(const Point& inImage) const {
   if (displacement.size() == 0) return affine * inImage;
   return affine * (inImage + displacementAt(displacement, inImage));

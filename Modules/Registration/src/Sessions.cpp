@@ -196,7 +196,7 @@ Motion motionOf(const Vector& translation, const Vector& rotation, const Point& 
 /// The rotation nearest to a's affine map onto b; the head's centre goes where it does.
 Motion startOf(const Volume<float>& a, const Volume<float>& b, const Monitor& monitor) {
   const Volume<float> head = headOf(a);
-  const Eigen::Affine3d found = registerAffine(b, a, head, monitor).templateToImage;
+  const Eigen::Affine3d found = registerAffine(b, a, head, Pose::Upright, monitor).templateToImage;
   const Point centre = centreOf(head);
   Motion motion = Motion::Identity();
   motion.linear() = found.rotation();

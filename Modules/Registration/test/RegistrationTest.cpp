@@ -116,7 +116,7 @@ double meanDistance(const HeadTransform& found, const std::function<Point(const 
 /// brightness, other voxels, a bias field.
 /// @param truth  from the image to the template
 /// @param most   mean distance, mm
-void expectFound(const Eigen::Affine3d& truth, double most) {
+void expectFound(const Eigen::Affine3d& truth, Pose pose, double most) {
   const Template phantom = phantomTemplate();
   Grid grid = cube(64, 3.5);
   grid.spacing = Vector(3, 3.5, 4.5);
@@ -125,7 +125,7 @@ void expectFound(const Eigen::Affine3d& truth, double most) {
   });
   Volume<float> region = phantom.brain;
   for (float& value : region.data) value = value > 0 ? 1 : 0;
-  const AffineRegistration found = registerAffine(image, phantom.head, region);
+  const AffineRegistration found = registerAffine(image, phantom.head, region, pose);
   HeadTransform transform;
   transform.affine = found.templateToImage.inverse();
   EXPECT_LT(meanDistance(transform, [&](const Point& p) { return truth * p; }), most);
@@ -133,13 +133,14 @@ void expectFound(const Eigen::Affine3d& truth, double most) {
 }
 
 TEST(AffineRegistration, FindsAHeadThatWasMovedTurnedAndScaled) {
-  expectFound(movement(), 1);
+  expectFound(movement(), Pose::Upright, 1);
 }
 
 TEST(AffineRegistration, FindsAHeadThatIsTurnedByUpTo90Degrees) {
   for (const Vector& turn : {Vector(90, 0, 0), Vector(0, 0, 90), Vector(-30, 50, -55)}) {
     SCOPED_TRACE(turn.transpose());
-    expectFound(movement() * Eigen::AngleAxisd(turn.norm() * kPi / 180, turn.normalized()), 1.5);
+    expectFound(movement() * Eigen::AngleAxisd(turn.norm() * kPi / 180, turn.normalized()),
+                Pose::Turned, 1.5);
   }
 }
 
@@ -178,7 +179,7 @@ TEST(HeadRegistration, TakenAgainIsJudgedAsItWasWhenItWasFound) {
   };
   DeformationOptions options;
   options.spacing = 6;
-  const HeadRegistration found = registerHead(image(Point::Zero()), phantom, false, options);
+  const HeadRegistration found = registerHead(image(Point::Zero()), phantom, false, 0, options);
   const HeadRegistration again =
       reuseRegistration(image(Point::Zero()), phantom, false, found.transform, options);
   EXPECT_NEAR(again.agreement.correlation, found.agreement.correlation, 1e-5);
@@ -203,7 +204,7 @@ TEST(Deformation, DoesNotDependOnThreads) {
   options.maxIterations = 5;
   const auto with = [&](int threads) {
     setThreadCount(threads);
-    auto found = registerHead(image, phantom, false, options).transform;
+    auto found = registerHead(image, phantom, false, 0, options).transform;
     setThreadCount(0);
     return found;
   };

@@ -33,11 +33,14 @@ struct HeadRegistration {
 /// True if the image has no skull: what lies above 0 is not much more than the template's brain.
 [[nodiscard]] bool looksStripped(const Volume<float>& image, const Template& head);
 
-/// Brings a template into the image's space: affinely, then by a deformation.
+/// Brings a template into the image's space: affinely, then by a deformation.  A head that is not
+/// found so is looked for in turned poses, too.
 /// @param stripped  the image has no skull: it is compared with the template's brain alone
+/// @param enough    agreement by which a head is held to be found
 /// @throws InvalidInput  a head with skull for a template without, an image without contrast
 [[nodiscard]] HeadRegistration registerHead(const Volume<float>& image, const Template& head,
-                                            bool stripped, const DeformationOptions& options = {},
+                                            bool stripped, double enough = 0,
+                                            const DeformationOptions& options = {},
                                             const Monitor& monitor = {});
 
 /// Takes a transform that an earlier registration has found, and compares as `registerHead` does.

@@ -23,6 +23,9 @@ struct HeadTransform {
 /// proportions.
 [[nodiscard]] double stretchOf(const Eigen::Affine3d& affine);
 
+/// Angle of the rotation in an affine map, degrees.
+[[nodiscard]] double turnOf(const Eigen::Affine3d& affine);
+
 /// The template's scalars on a grid in the image's space: trilinear, 0 beyond the template.
 [[nodiscard]] Volume<float> pulled(const Volume<float>& inTemplate, const HeadTransform& transform,
                                    const Grid& grid);

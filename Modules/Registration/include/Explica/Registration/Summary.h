@@ -13,6 +13,7 @@ struct HeadSummary {
   std::optional<double> correlation;      ///< of tissue and template after the deformation
   std::optional<double> leastJacobian;    ///< of the deformation
   std::optional<double> stretch;          ///< of the affine map
+  std::optional<double> turn;             ///< of the affine map, degrees
   std::optional<double> fluidOfWhite;     ///< HeadRegistration::fluidOfWhite
   std::optional<double> borderOffset;     ///< BrainMask::meanOffset, mm
   std::optional<double> borderDeviation;  ///< BrainMask::deviation, mm
@@ -30,6 +31,10 @@ inline void describe(Results& t, const HeadSummary& r) {
            "Above 0 the deformation is one to one.", r.leastJacobian);
   t.number("registration_stretch", "Stretch of the affine registration", "",
            "Largest over smallest scale.", r.stretch);
+  t.number("registration_turn", "Rotation of the affine registration", "degrees",
+           "How far the head is turned from where its header says.", r.turn)
+      .atMost(45, Judgement::Look,
+              "it lay so, or an axis of the header is wrong; left and right may be exchanged then");
   t.number("registration_fluid_of_white", "Template's fluid over its white matter", "",
            "Ratio of the image's brightness there; below 1 in a T1.", r.fluidOfWhite);
   t.number("brain_border_offset", "Border of the brain, beyond the template's", "mm",
