@@ -176,7 +176,8 @@ void warnOf(Context& context, const flattening::Disc& disc, const flattening::Fl
                 disc.otherPieces + 1, 100 * disc.areaOfOthers));
   }
   if (!disc.holes.empty()) {
-    context.warn("the surface has " + std::to_string(disc.holes.size()) + " holes; they stay open");
+    context.warn("the surface has " + std::to_string(disc.holes.size()) +
+                 (disc.holes.size() == 1 ? " hole; it stays open" : " holes; they stay open"));
   }
   if (map.turnedOver > 0 || map.rimCrossings > 0) {
     context.warn(std::to_string(map.turnedOver) + " faces are turned over and " +
