@@ -255,16 +255,14 @@ std::vector<Parameters> allDirections(double size) {
   return directions;
 }
 
-/// What is bright in an image.
+/// Where the voxels of headOf() are.
 std::vector<Point> brightOf(const Volume<float>& image) {
-  double sum = 0;
-  for (const float value : image.data) sum += value;
-  const auto least = static_cast<float>(sum / static_cast<double>(image.size()));
+  const Volume<float> head = headOf(image);
   std::vector<Point> bright;
-  for (std::size_t v = 0; v < image.size(); ++v) {
-    if (!(image[v] > least)) continue;
-    const auto [i, j, k] = image.grid.subscripts(v);
-    bright.push_back(image.grid.toWorld(Vector(i, j, k)));
+  for (std::size_t v = 0; v < head.size(); ++v) {
+    if (!(head[v] > 0)) continue;
+    const auto [i, j, k] = head.grid.subscripts(v);
+    bright.push_back(head.grid.toWorld(Vector(i, j, k)));
   }
   if (bright.empty()) throw InvalidInput("T1: holds one value only");
   return bright;
