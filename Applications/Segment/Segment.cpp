@@ -99,24 +99,24 @@ void makeHemispheres(Context& context, const SegmentSettings& s, const Boxes& bo
                      const segmentation::TissueSegmentation& tissue, const Atlas& atlas,
                      segmentation::TissueSummary& summary) {
   auto step = context.step("hemisphere");
-  const bool both = s.hemisphere.side == Side::Both;
   summary.side = s.hemisphere.side;
-  Volume<Label> merged;
-  if (both) merged = Volume<Label>(tissue.labels.grid, 0);
-  for (const Side side : {Side::Left, Side::Right}) {
-    if (!both && side != s.hemisphere.side) continue;
-    segmentation::HemisphereOptions options = s.hemisphere;
-    options.side = side;
+  if (s.hemisphere.side != Side::Both) {
     const auto hemisphere = segmentation::extractHemisphere(tissue, atlas.labels, atlas.legend,
-                                                            options, context.monitor());
-    const std::string folder = side == Side::Left ? "left/" : "right/";
-    (!both                ? summary.one
-     : side == Side::Left ? summary.left
-                          : summary.right) = segmentation::countsOf(hemisphere);
-    writeHemisphere(context, boxes, both ? folder : "", hemisphere);
-    if (both) addSide(merged, hemisphere, side);
+                                                            s.hemisphere, context.monitor());
+    summary.one = segmentation::countsOf(hemisphere);
+    writeHemisphere(context, boxes, "", hemisphere);
+    return;
   }
-  if (both) writeWhole(context, "hemisphere.nii.gz", boxes, std::move(merged));
+  const auto [left, right] = segmentation::extractHemispheres(tissue, atlas.labels, atlas.legend,
+                                                              s.hemisphere, context.monitor());
+  summary.left = segmentation::countsOf(left);
+  summary.right = segmentation::countsOf(right);
+  writeHemisphere(context, boxes, "left/", left);
+  writeHemisphere(context, boxes, "right/", right);
+  Volume<Label> merged(tissue.labels.grid, 0);
+  addSide(merged, left, Side::Left);
+  addSide(merged, right, Side::Right);
+  writeWhole(context, "hemisphere.nii.gz", boxes, std::move(merged));
 }
 
 void writeTissue(Context& context, const Boxes& boxes,

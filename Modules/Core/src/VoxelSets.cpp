@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Core/VoxelSets.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/GridLines.h"
 #include "Explica/Core/Parallel.h"
 
@@ -102,29 +103,72 @@ std::int32_t Components::largest() const {
   return static_cast<std::int32_t>(std::ranges::max_element(size) - size.begin());
 }
 
-Components componentsOf(const VoxelSet& set) {
-  const Grid& grid = set.grid;
-  Components components;
-  components.number = Volume<std::int32_t>(grid, -1);
-  std::vector<std::size_t> stack;
-  for (std::size_t seed = 0; seed < set.size(); ++seed) {
-    if (set[seed] == 0 || components.number[seed] >= 0) continue;
-    const auto number = static_cast<std::int32_t>(components.size.size());
-    std::int64_t size = 0;
-    components.number[seed] = number;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const std::size_t v = stack.back();
-      stack.pop_back();
-      ++size;
-      for (const std::int64_t w : grid.neighbours(v)) {
-        if (w < 0 || set[w] == 0 || components.number[w] >= 0) continue;
-        components.number[w] = number;
-        stack.push_back(static_cast<std::size_t>(w));
+namespace {
+
+/// Voxels of a set that follow each other along the first axis.
+struct VoxelRun {
+  int begin, end;
+};
+
+/// The runs of every line along the first axis.
+struct VoxelRuns {
+  std::vector<VoxelRun> runs;
+  std::vector<std::int32_t> first;  ///< of each line; one more at the end
+
+  explicit VoxelRuns(const VoxelSet& set) {
+    const int length = set.grid.size[0];
+    for (std::size_t line = 0; line < set.size(); line += length) {
+      first.push_back(static_cast<std::int32_t>(runs.size()));
+      const std::uint8_t* const in = set.data.data() + line;
+      for (int i = 0; i < length; ++i) {
+        if (in[i] == 0) continue;
+        const int begin = i;
+        while (i < length && in[i] != 0) ++i;
+        runs.push_back({begin, i});
       }
     }
-    components.size.push_back(size);
+    first.push_back(static_cast<std::int32_t>(runs.size()));
   }
+
+  /// Joins the runs of two lines that have voxels beside each other.
+  void join(std::size_t line, std::size_t other, DisjointSets& sets) const {
+    std::int32_t a = first[line], b = first[other];
+    while (a < first[line + 1] && b < first[other + 1]) {
+      if (runs[a].begin < runs[b].end && runs[b].begin < runs[a].end) sets.join(a, b);
+      runs[a].end < runs[b].end ? ++a : ++b;
+    }
+  }
+};
+
+}  // namespace
+
+Components componentsOf(const VoxelSet& set) {
+  const auto [length, rows, slices] = set.grid.size;
+  const VoxelRuns lines(set);
+  DisjointSets sets(lines.runs.size());
+  for (std::size_t line = 0; line + 1 < lines.first.size(); ++line) {
+    if (line % rows != 0) lines.join(line, line - 1, sets);
+    if (line >= static_cast<std::size_t>(rows)) lines.join(line, line - rows, sets);
+  }
+  Components components;
+  std::vector<std::int32_t> number(lines.runs.size());
+  for (std::int32_t run = 0; run < static_cast<std::int32_t>(lines.runs.size()); ++run) {
+    const std::int32_t root = sets.root(run);
+    if (root == run) {
+      number[run] = static_cast<std::int32_t>(components.size.size());
+      components.size.push_back(0);
+    }
+    number[run] = number[root];
+    components.size[number[run]] += lines.runs[run].end - lines.runs[run].begin;
+  }
+  components.number = Volume<std::int32_t>(set.grid, -1);
+  parallelFor(lines.first.size() - 1, 256, [&](std::size_t line) {
+    for (std::int32_t run = lines.first[line]; run < lines.first[line + 1]; ++run) {
+      const auto start =
+          components.number.data.begin() + static_cast<std::ptrdiff_t>(line) * length;
+      std::fill(start + lines.runs[run].begin, start + lines.runs[run].end, number[run]);
+    }
+  });
   return components;
 }
 

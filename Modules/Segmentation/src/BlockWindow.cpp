@@ -92,11 +92,20 @@ void BlockWindow::smoothAlong(std::vector<double>& values, int axis) const {
 std::vector<double> BlockWindow::sums(const std::vector<std::size_t>& voxel,
                                       const std::vector<float>& values) const {
   std::vector<double> sums(count(), 0.0);
-  Walk walk(grid_);
-  for (std::size_t s = 0; s < voxel.size(); ++s) {
-    const auto& at = walk.to(voxel[s]);
-    sums[linear(placeOf(at, 0).block, placeOf(at, 1).block, placeOf(at, 2).block)] += values[s];
-  }
+  const auto firstOf = [&](std::size_t layer) {
+    const std::size_t slice = first_[2] + layer * step_[2];
+    const std::size_t begin = slice * grid_.size[0] * grid_.size[1];
+    return static_cast<std::size_t>(std::ranges::lower_bound(voxel, begin) - voxel.begin());
+  };
+  parallelFor(size_[2], 1, [&](std::size_t layer) {  // of blocks, whose voxels lie together
+    Walk walk(grid_);
+    const std::size_t end = firstOf(layer + 1);
+    for (std::size_t s = firstOf(layer); s < end; ++s) {
+      const auto& at = walk.to(voxel[s]);
+      sums[linear(placeOf(at, 0).block, placeOf(at, 1).block, static_cast<int>(layer))] +=
+          values[s];
+    }
+  });
   for (int a = 0; a < 3; ++a) {
     if (size_[a] > 1) smoothAlong(sums, a);
   }

@@ -22,7 +22,7 @@ class BlockWindow {
   [[nodiscard]] std::size_t count() const;
 
   /// One sum a block; a sample at the block's centre counts once, others as far as they are near.
-  /// @param voxel  of the samples, in the box
+  /// @param voxel  of the samples, in the box, ascending
   [[nodiscard]] std::vector<double> sums(const std::vector<std::size_t>& voxel,
                                          const std::vector<float>& values) const;
 

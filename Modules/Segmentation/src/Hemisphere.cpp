@@ -3,6 +3,7 @@
 #include "Explica/Segmentation/Hemisphere.h"
 
 #include "Explica/Core/OrderStatistics.h"
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ AtlasMap mapAtlas(const Volume<Label>& atlas, const AtlasLegend& legend) {
 template <class Test>
 VoxelSet setWhere(const Grid& grid, const Test& test) {
   VoxelSet set(grid, 0);
-  for (std::size_t v = 0; v < set.size(); ++v) set[v] = test(v) ? 1 : 0;
+  parallelFor(set.size(), 65536, [&](std::size_t v) { set[v] = test(v) ? 1 : 0; });
   return set;
 }
 
@@ -202,27 +203,43 @@ struct Draft {
   VoxelSet tissue;  ///< white and grey matter
 };
 
-/// Where the atlas' structures are nearest, squared distances in mm^2.
-struct Nearness {
-  Volume<float> side, other, belowTent, cortex;
-};
+/// What both hemispheres are extracted by: the atlas, and where its structures are nearest, squared
+/// distances in mm^2.
+struct Anatomy {
+  const Volume<Label>& atlas;
+  const AtlasLegend& legend;
+  AtlasMap map;
+  VoxelSet stem;
+  Volume<float> toLeft, toRight, toBelowTent, toCortex;
 
-Nearness nearnessOf(const AtlasMap& map, std::uint8_t side, std::uint8_t otherSide) {
-  const Grid& grid = map.kind.grid;
-  const auto cerebral = [&](std::size_t v) {
-    return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent) &&
-           map.kind[v] != kindCode(StructureKind::Stem);
-  };
-  return {
-      squaredDistanceTo(
-          setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == side; })),
-      squaredDistanceTo(
-          setWhere(grid, [&](std::size_t v) { return cerebral(v) && map.side[v] == otherSide; })),
-      squaredDistanceTo(setWhere(
-          grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::BelowTent); })),
-      squaredDistanceTo(setWhere(
-          grid, [&](std::size_t v) { return map.kind[v] == kindCode(StructureKind::Cortex); }))};
-}
+  Anatomy(const Volume<Label>& labels, const AtlasLegend& names)
+      : atlas(labels),
+        legend(names),
+        map(mapAtlas(atlas, legend)),
+        stem(findStem(map, legend, atlas)),
+        toLeft(toCerebral(Side::Left)),
+        toRight(toCerebral(Side::Right)),
+        toBelowTent(toKind(StructureKind::BelowTent)),
+        toCortex(toKind(StructureKind::Cortex)) {}
+
+  /// Ties between the halves go to the left, so that the two hemispheres never share a voxel.
+  [[nodiscard]] bool isOn(Side side, std::size_t v) const {
+    const bool half = side == Side::Left ? toLeft[v] <= toRight[v] : toRight[v] < toLeft[v];
+    return half && (side == Side::Left ? toLeft : toRight)[v] <= toBelowTent[v] && stem[v] == 0;
+  }
+
+ private:
+  [[nodiscard]] Volume<float> toKind(StructureKind kind) const {
+    return squaredDistanceTo(
+        setWhere(atlas.grid, [&](std::size_t v) { return map.kind[v] == kindCode(kind); }));
+  }
+  [[nodiscard]] Volume<float> toCerebral(Side side) const {
+    return squaredDistanceTo(setWhere(atlas.grid, [&](std::size_t v) {
+      return map.kind[v] != 0 && map.kind[v] != kindCode(StructureKind::BelowTent) &&
+             map.kind[v] != kindCode(StructureKind::Stem) && map.side[v] == sideCode(side);
+    }));
+  }
+};
 
 /// White matter and the deep structures, which count as such; how many voxels these add.
 std::int64_t takeDeep(const VoxelSet& deep, const Volume<Label>& seg, Draft& draft) {
@@ -491,34 +508,19 @@ void label(const TissueSegmentation& tissue, const Draft& draft, const VoxelSet&
   }
 }
 
-void requireOneSide(const TissueSegmentation& tissue, const Volume<Label>& atlas, Side side) {
+void requireSameGrid(const TissueSegmentation& tissue, const Volume<Label>& atlas) {
   if (!sameGrid(tissue.labels.grid, atlas.grid)) {
     throw InvalidInput(
         "atlas: lies on another grid than the segmentation; resample its labels to the T1's grid");
   }
-  if (side == Side::Both) throw InvalidInput("hemisphere: found 'both', expected L or R");
 }
 
-}  // namespace
-
-Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Label>& atlas,
-                             const AtlasLegend& legend, const HemisphereOptions& options,
-                             const Monitor& monitor) {
-  requireOneSide(tissue, atlas, options.side);
+Hemisphere extract(const TissueSegmentation& tissue, const Anatomy& anatomy, Side side,
+                   const HemisphereOptions& options, const Monitor& monitor) {
   const Grid& grid = tissue.labels.grid;
   const Volume<Label>& seg = tissue.labels;
-  const AtlasMap map = mapAtlas(atlas, legend);
-  monitor.progress(0.1, "nearest atlas labels");
-  const Nearness to = nearnessOf(map, sideCode(options.side),
-                                 sideCode(options.side == Side::Left ? Side::Right : Side::Left));
-  const VoxelSet stem = findStem(map, legend, atlas);
-
-  // Ties between the halves go to the left, so that the two hemispheres never share a voxel.
-  const auto ours = [&](std::size_t v) {
-    const bool half =
-        options.side == Side::Left ? to.side[v] <= to.other[v] : to.side[v] < to.other[v];
-    return half && to.side[v] <= to.belowTent[v] && stem[v] == 0;
-  };
+  const AtlasMap& map = anatomy.map;
+  const auto ours = [&](std::size_t v) { return anatomy.isOn(side, v); };
   Draft draft{setWhere(grid, [&](std::size_t v) { return seg[v] != 0 && ours(v); }),
               VoxelSet(grid, 0), VoxelSet(grid, 0), VoxelSet(grid, 0)};
 
@@ -530,10 +532,11 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   result.deepVoxels = takeDeep(deep, seg, draft);
   const double leastSquared = options.coreDepth * options.coreDepth;
   const VoxelSet voids = setWhere(grid, [&](std::size_t v) {
-    return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && to.cortex[v] >= leastSquared;
+    return ours(v) && map.kind[v] == 0 && seg[v] != kWhite && anatomy.toCortex[v] >= leastSquared;
   });
-  const VoxelSet ventricle = setWhere(
-      grid, [&](std::size_t v) { return deep[v] != 0 && isVentricle(legend.at(atlas[v]).name); });
+  const VoxelSet ventricle = setWhere(grid, [&](std::size_t v) {
+    return deep[v] != 0 && isVentricle(anatomy.legend.at(anatomy.atlas[v]).name);
+  });
   result.ventricleVoxels = fillVentricles(voids, deep, ventricle, seg, draft) + voxelsIn(ventricle);
   VoxelSet mesial = fillClosedFluid(seg, draft);
   result.ventricleVoxels += voxelsIn(mesial);
@@ -568,7 +571,7 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
         setWhere(grid,
                  [&](std::size_t v) {
                    return seg[v] == kWhite || map.kind[v] == kindCode(StructureKind::Deep) ||
-                          (stem[v] != 0 && seg[v] == kGrey);
+                          (anatomy.stem[v] != 0 && seg[v] == kGrey);
                  }),
         result);
   if (result.greyVoxels == 0) {
@@ -577,6 +580,31 @@ Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Labe
   }
   monitor.progress(1, "hemisphere");
   return result;
+}
+
+}  // namespace
+
+Hemisphere extractHemisphere(const TissueSegmentation& tissue, const Volume<Label>& atlas,
+                             const AtlasLegend& legend, const HemisphereOptions& options,
+                             const Monitor& monitor) {
+  requireSameGrid(tissue, atlas);
+  if (options.side == Side::Both) throw InvalidInput("hemisphere: found 'both', expected L or R");
+  monitor.progress(0.1, "nearest atlas labels");
+  return extract(tissue, Anatomy(atlas, legend), options.side, options, monitor);
+}
+
+std::array<Hemisphere, 2> extractHemispheres(const TissueSegmentation& tissue,
+                                             const Volume<Label>& atlas, const AtlasLegend& legend,
+                                             const HemisphereOptions& options,
+                                             const Monitor& monitor) {
+  requireSameGrid(tissue, atlas);
+  monitor.progress(0.1, "nearest atlas labels");
+  const Anatomy anatomy(atlas, legend);
+  std::array<Hemisphere, 2> both;
+  parallelTasks(2, [&](std::size_t right) {
+    both[right] = extract(tissue, anatomy, right != 0 ? Side::Right : Side::Left, options, monitor);
+  });
+  return both;
 }
 
 Label labelStem(Volume<Label>& atlas, AtlasLegend& legend) {

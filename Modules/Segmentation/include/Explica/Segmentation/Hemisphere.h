@@ -8,6 +8,7 @@
 #include "Explica/Segmentation/Atlas.h"
 #include "Explica/Segmentation/Tissue.h"
 
+#include <array>
 #include <cstdint>
 
 namespace explica::segmentation {
@@ -62,6 +63,15 @@ struct Hemisphere {
                                            const Volume<Label>& atlas, const AtlasLegend& legend,
                                            const HemisphereOptions& options = {},
                                            const Monitor& monitor = {});
+
+/// Both at once, left first, whatever `options.side` says: sooner than one after the other, and the
+/// same.
+/// @throws InvalidInput  as extractHemisphere
+[[nodiscard]] std::array<Hemisphere, 2> extractHemispheres(const TissueSegmentation& tissue,
+                                                           const Volume<Label>& atlas,
+                                                           const AtlasLegend& legend,
+                                                           const HemisphereOptions& options = {},
+                                                           const Monitor& monitor = {});
 
 /// Gives the brain stem of an atlas that does not label it a label of its own (see
 /// extractHemisphere), so that it stays known where the atlas is turned or bent.
