@@ -323,6 +323,66 @@ TEST(Run, BothHemispheresAreDoneWhereLabelsTellThemApart) {
   EXPECT_NE(readText(out / "report.html").find("right"), std::string::npos);
 }
 
+/// Names of the steps in the order in which a record lists them.
+std::vector<std::string> stepsIn(const fs::path& out) {
+  std::vector<std::string> names;
+  const auto record = readJson(out / "provenance.json");
+  for (const auto& step : record["execution"]["steps"]) names.push_back(step["name"]);
+  return names;
+}
+
+TEST(Run, HemispheresSideBySideAreThoseOfOneAfterTheOther) {
+  TemporaryFolder folder;
+  writeTwoBalls(folder / "ribbon.nii.gz");
+  const std::vector<std::string> words = {
+      "run",  folder / "ribbon.nii.gz", "--steps", "thickness,surface,unfold", "--surface.faces",
+      "1500", "--unfold.radius",        "6",       "--unfold.max-iterations",  "2"};
+  const auto one =
+      explica(words + std::vector<std::string>{"--threads", "1", "--out", folder / "one"});
+  const auto few = explica(words + std::vector<std::string>{"--threads", "1", "--max-memory",
+                                                            "4000", "--out", folder / "few"});
+  const auto side =
+      explica(words + std::vector<std::string>{"--threads", "4", "--out", folder / "side"});
+  const std::vector<std::string> steps = {"thickness-L", "surface-L", "unfold-L",
+                                          "thickness-R", "surface-R", "unfold-R"};
+  std::map<std::string, int> linesOf;
+  for (const std::string& line : progressIn(side.err)) ++linesOf[line.substr(0, line.find(':'))];
+  for (const std::string& step : steps) {
+    EXPECT_EQ(stableHashes(folder.path() / "side" / step),
+              stableHashes(folder.path() / "one" / step))
+        << step;
+    EXPECT_EQ(stableHashes(folder.path() / "few" / step),
+              stableHashes(folder.path() / "one" / step))
+        << step;
+    EXPECT_EQ(linesOf[step], 1) << side;
+  }
+  for (const char* out : {"one", "few", "side"}) EXPECT_EQ(stepsIn(folder / out), steps) << out;
+  const auto first = readJson(folder / "one/summary.json");
+  const auto second = readJson(folder / "side/summary.json");
+  EXPECT_EQ(first["reasons"], second["reasons"]);
+  EXPECT_EQ(first["verdict"], second["verdict"]);
+  EXPECT_EQ(first["flags"], second["flags"]);
+}
+
+TEST(Run, AFailureOnOneSideEndsTheOtherUnlessTheRunCanBeResumed) {
+  TemporaryFolder folder;
+  writeTwoBalls(folder / "ribbon.nii.gz");
+  const std::vector<std::string> words = {
+      "run",  folder / "ribbon.nii.gz", "--steps",  "surface,unfold", "--surface.faces",
+      "1500", "--unfold.vertex",        "99999999", "--out",          folder / "out"};
+  const auto before = folder.entries();
+  const auto failed = explica(words);
+  EXPECT_EQ(failed.exitCode, 2) << failed;
+  EXPECT_EQ(folder.entries(), before);
+  const auto kept = explica(words + std::vector<std::string>{"--resume"});
+  EXPECT_EQ(kept.exitCode, 2) << kept;
+  const auto states = statesOf(folder / "out");
+  for (const std::string side : {"L", "R"}) {
+    EXPECT_EQ(states.at("surface-" + side), "done");
+    EXPECT_EQ(states.at("unfold-" + side), "failed");
+  }
+}
+
 TEST(Run, WhatHemispheresShareStaysTillBothAreDone) {
   const fs::path fsaverage = fs::path(EXPLICA_REAL_DATA) / "fsaverage";
   if (!fs::exists(fsaverage)) GTEST_SKIP() << "skipped: no real data";

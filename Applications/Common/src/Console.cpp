@@ -128,35 +128,33 @@ void Console::progress(double fraction, const std::string& step, std::string_vie
   int tenth = 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (step != step_) {
-      step_ = step;
-      stepBegan_ = Clock::now();
-      reached_ = 0;
-      lastTenth_ = -1;
-    }
-    reached_ = std::clamp(fraction, reached_, 1.0);
-    tenth = static_cast<int>(reached_ * 10);
-    if (terminal_ && level_ != Level::Quiet) drawBar(activity);
-    if (activity == lastActivity_ && tenth == lastTenth_) return;
+    Reached& reached = steps_[step];
+    const bool isBeside = step_ && !step.starts_with(*step_) && !step_->starts_with(step);
+    if (!isBeside) step_ = step;
+    reached.share = std::clamp(fraction, reached.share, 1.0);
+    tenth = static_cast<int>(reached.share * 10);
+    if (terminal_ && level_ != Level::Quiet && !isBeside) drawBar(reached, activity);
+    if (activity == reached.lastActivity && tenth == reached.lastTenth) return;
     // A step of a run takes one line; a command on its own one for each tenth.
-    const bool worthALine = step.empty() ? tenth > lastTenth_ : lastTenth_ < 0;
+    const bool worthALine = step.empty() ? tenth > reached.lastTenth : reached.lastTenth < 0;
     shown = !terminal_ && (level_ == Level::Verbose || (level_ == Level::Normal && worthALine));
-    lastActivity_ = activity;
-    lastTenth_ = tenth;
+    reached.lastActivity = activity;
+    reached.lastTenth = tenth;
   }
   line("", activity + ": " + std::to_string(tenth * 10) + " %", shown);
 }
 
-void Console::drawBar(const std::string& activity) {
+void Console::drawBar(const Reached& reached, const std::string& activity) {
   constexpr auto kRedraw = std::chrono::milliseconds(100);  // often enough to be seen to move
   const auto now = Clock::now();
-  if (activity == lastActivity_ && now - lastDrawn_ <= kRedraw && reached_ < 1) return;
+  if (activity == reached.lastActivity && now - lastDrawn_ <= kRedraw && reached.share < 1) return;
   constexpr int kWidth = 30;  // characters
-  const auto filled = static_cast<std::size_t>(reached_ * kWidth);
+  const auto filled = static_cast<std::size_t>(reached.share * kWidth);
   std::string bar(filled, '=');
   bar.resize(kWidth, ' ');
-  std::fprintf(stderr, "\r\033[K[%s] %3d %%%s  %s", bar.c_str(), static_cast<int>(reached_ * 100),
-               timeLeft(reached_, now - stepBegan_).c_str(), activity.c_str());
+  std::fprintf(stderr, "\r\033[K[%s] %3d %%%s  %s", bar.c_str(),
+               static_cast<int>(reached.share * 100),
+               timeLeft(reached.share, now - reached.began).c_str(), activity.c_str());
   std::fflush(stderr);
   barShown_ = true;
   lastDrawn_ = now;
@@ -164,6 +162,14 @@ void Console::drawBar(const std::string& activity) {
 
 void Console::endProgress() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  clearBar();
+}
+
+void Console::endStep(const std::string& step) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  steps_.erase(step);
+  if (step_ != step) return;
+  step_.reset();
   clearBar();
 }
 

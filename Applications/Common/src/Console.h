@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,8 +13,9 @@
 
 namespace explica::app {
 
-/// Messages to standard error and to the log file: a progress bar with the time left on a
-/// terminal, a line a step elsewhere. May be called from several threads.
+/// Messages to standard error and to the log file: a progress bar with the time left on a terminal,
+/// which of steps side by side shows the one that was first, and a line a step elsewhere.  May be
+/// called from several threads.
 class Console {
  public:
   enum class Level { Quiet, Normal, Verbose };
@@ -35,12 +37,20 @@ class Console {
   /// @param step      of a run, as "surface-L: "; empty for a command on its own
   void progress(double fraction, const std::string& step, std::string_view said);
   void endProgress();
+  /// The step is over: the bar is another's.
+  void endStep(const std::string& step);
 
  private:
   using Clock = std::chrono::steady_clock;
+  struct Reached {
+    double share = 0;  ///< the largest so far
+    int lastTenth = -1;
+    Clock::time_point began = Clock::now();
+    std::string lastActivity = {};
+  };
 
   void line(std::string_view kind, const std::string& message, bool shown);
-  void drawBar(const std::string& activity);
+  void drawBar(const Reached& reached, const std::string& activity);
   void clearBar();
   void noteLoss(int written, const std::string& where);
 
@@ -50,11 +60,8 @@ class Console {
   Level level_ = Level::Normal;
   bool terminal_ = false;
   bool barShown_ = false;
-  int lastTenth_ = -1;
-  double reached_ = 0;  ///< the largest share of this step
-  std::optional<std::string> step_;
-  Clock::time_point stepBegan_{};
-  std::string lastActivity_;
+  std::map<std::string, Reached> steps_;  ///< those that are not over, by name
+  std::optional<std::string> step_;       ///< whose the bar is
   Clock::time_point lastDrawn_{};
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> log_;
 };

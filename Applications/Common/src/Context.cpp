@@ -11,6 +11,9 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace explica::app {
 
 namespace fs = std::filesystem;
@@ -39,6 +42,18 @@ const char* Context::State::verdict(const Json& words) const {
   if (!reachedGoal(record.termination)) return "stopped";
   if (doubtful()) return "doubtful";
   return words.empty() ? "right" : "look";
+}
+
+void Context::State::adopt(State&& part) {
+  std::ranges::move(part.record.steps, std::back_inserter(record.steps));
+  std::ranges::move(part.nestedRecords, std::back_inserter(nestedRecords));
+  std::ranges::move(part.reasons, std::back_inserter(reasons));
+  plausible = plausible && part.plausible;
+  if (!part.flags) return;
+  if (!flags) flags = Json::array();
+  for (Json& flag : *part.flags) {
+    if (std::ranges::find(*flags, flag) == flags->end()) flags->push_back(std::move(flag));
+  }
 }
 
 Context::Step::Step(Context& context, std::string name)
@@ -178,6 +193,7 @@ void Context::warn(const std::string& message) {
 
 bool Context::given(std::string_view name) const {
   if (name == "dry-run") return state_->run.common.dryRun;  // of steps, too
+  if (name == "max-memory") return state_->run.common.maxMemory.has_value();
   return state_->run.given.count(std::string(name)) > 0;
 }
 int Context::threads() const {

@@ -39,7 +39,8 @@ fs::path cacheFolder() {
 }
 
 /// Makes the template beside its place and moves it there whole, so that several processes may.
-fs::path colin27(Context& context) {
+/// @param structure  of who asks: another thread may ask for the other one's
+fs::path colin27(Context& context, const std::string& structure) {
   const fs::path place = cacheFolder() / ("colin27-" + std::string(provenance::software().version));
   if (isThere(place / provenance::kRecordName)) return place;
   if (!hasTemplate(kDefaultTemplate)) {
@@ -49,7 +50,7 @@ fs::path colin27(Context& context) {
   }
   auto step = context.step("template");
   context.info("the template is made from Colin27, once, in " + place.string());
-  const fs::path making = place.string() + "-" + std::to_string(getpid());
+  const fs::path making = place.string() + "-" + std::to_string(getpid()) + structure;
   std::error_code fault;
   fs::create_directories(place.parent_path(), fault);
   if (fault) {
@@ -71,11 +72,11 @@ fs::path colin27(Context& context) {
   return place;
 }
 
-fs::path folderOf(Context& context, const std::string& name) {
+fs::path folderOf(Context& context, const std::string& name, const std::string& structure) {
   if (isFolder(name)) return name;
   const char* subjects = std::getenv("SUBJECTS_DIR");
   if (subjects != nullptr && isFolder(fs::path(subjects) / name)) return fs::path(subjects) / name;
-  if (name == kDefaultTemplate) return colin27(context);
+  if (name == kDefaultTemplate) return colin27(context, structure);
   throw InvalidInput("template '" + name +
                      "': neither a folder nor a subject in $SUBJECTS_DIR; name a folder with "
                      "lh.sphere.reg, lh.sulc and lh.curv");
@@ -109,7 +110,7 @@ bool hasTemplate(const std::string& name) {
 
 CortexTemplate findTemplate(Context& context, const std::string& name,
                             const std::string& structure) {
-  const fs::path folder = folderOf(context, name);
+  const fs::path folder = folderOf(context, name, structure);
   const std::string side = structure == "CortexRight" ? "R" : "L";
   std::vector<std::string> folders;
   for (const std::string& below : {std::string(), std::string("surf"), std::string("label"),

@@ -241,17 +241,21 @@ void publish(Context::State& state) {
   state.folder->publish(provenance::kRecordName);
 }
 
+void limitThreads(int count) {
+  setThreadCount(count);
+  Eigen::setNbThreads(count);
+  fixBlocksOfProducts();
+  io::setItkThreadCount(count);  // Embree runs on TBB and follows it
+}
+
 }  // namespace
 
 Outcome execute(Run& run, Console& console) {
   const Declaration& declaration = run.invocation.declaration;
   const ThreadChoice threads = chooseThreads(run.common.threads);
-  setThreadCount(threads.count);
-  Eigen::setNbThreads(threads.count);
-  fixBlocksOfProducts();
-  io::setItkThreadCount(threads.count);  // Embree runs on TBB and follows it
+  if (!run.parent) limitThreads(threads.count);  // of steps, too, which may run side by side
 
-  Context::State state{run, console, {}, Json::object(), {}, {}, {}, {}, {}, true, {}};
+  Context::State state{.run = run, .console = console, .record = {}, .monitor = {}};
   Context context(state);
   provenance::Record& record = state.record;
   record = beginRecord(run, threads);
@@ -271,14 +275,14 @@ Outcome execute(Run& run, Console& console) {
   } catch (const DryRunEnds&) {
     return outcomeOf(Termination::NotRun, state);
   } catch (const Interrupted&) {
-    console.endProgress();
+    console.endStep(run.prefix);
     Outcome outcome = outcomeOf(Termination::Interrupted, state);
     outcome.abandoned = true;
     return outcome;
   } catch (const InvalidInput& error) {
     throw InvalidInput(withInputNames(error.what(), record, run.given));
   }
-  console.endProgress();
+  console.endStep(run.prefix);
   Outcome outcome = outcomeOf(termination, state);
   if (run.common.dryRun) return outcome;
   if (!state.folder) return outcome;

@@ -31,15 +31,15 @@ struct Context::State {
   provenance::Record record;
   Json summary = Json::object();
   Monitor monitor;
-  std::optional<OutputFolder> folder;
-  std::vector<std::string> varying;  ///< names of outputs whose bytes may differ
-  std::vector<std::pair<std::string, std::filesystem::path>> nestedRecords;
-  std::optional<Json> flags;  ///< numbers outside of their limits; nothing if none was judged
+  std::optional<OutputFolder> folder = {};
+  std::vector<std::string> varying = {};  ///< names of outputs whose bytes may differ
+  std::vector<std::pair<std::string, std::filesystem::path>> nestedRecords = {};
+  std::optional<Json> flags = {};  ///< numbers outside of their limits; nothing if none was judged
   bool plausible = true;
-  std::vector<std::pair<Judgement, std::string>> reasons;    ///< of results that are not good
-  std::vector<std::string> head = {};                        ///< results to end with, in words
-  std::optional<Meeting> meeting = {};                       ///< the files read so far
-  std::set<std::pair<std::string, std::string>> known = {};  ///< role and path of the same
+  std::vector<std::pair<Judgement, std::string>> reasons = {};  ///< of results that are not good
+  std::vector<std::string> head = {};                           ///< results to end with, in words
+  std::optional<Meeting> meeting = {};                          ///< the files read so far
+  std::set<std::pair<std::string, std::string>> known = {};     ///< role and path of the same
   Stopwatch seconds = {};
 
   [[nodiscard]] bool doubtful() const {
@@ -56,6 +56,8 @@ struct Context::State {
                            step + ": " + reason.get<std::string>());
     }
   }
+  /// What steps done apart have found and written counts as if done here.
+  void adopt(State&& part);
   /// Why the verdict is not "right", in sentences.
   [[nodiscard]] Json reasonsInWords() const;
   /// "right", "look", "doubtful" or "stopped": the worst of what can be said.

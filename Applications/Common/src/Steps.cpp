@@ -49,7 +49,7 @@ bool filesExist(const Declaration& declaration) {
 }  // namespace
 
 Outcome Context::runCommand(const Command& command, const std::string& name, const Json& options) {
-  if (!state_->folder || !state_->declaration().writesInPlace) {
+  if (!state_->declaration().writesInPlace) {
     throw std::logic_error("runCommand: the command must be declared inPlace()");
   }
   Run nested = nestedRun(command, options, state_->run, state_->monitor);

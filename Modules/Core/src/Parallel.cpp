@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -97,6 +98,12 @@ void parallelForBlocks(std::size_t count, std::size_t grain,
   promise.met();
   // Where a loop around this one has ended by an exception, TBB leaves blocks out without a word.
   if (group.is_group_execution_cancelled()) throw Interrupted{};
+}
+
+void parallelTasks(std::size_t count, const std::function<void(std::size_t)>& body) {
+  parallelForBlocks(count, 1, [&](std::size_t task, std::size_t) {
+    tbb::this_task_arena::isolate([&] { body(task); });
+  });
 }
 
 }  // namespace explica

@@ -142,6 +142,7 @@ class Context {
   explicit Context(State& state) : state_(&state) {}
 
  private:
+  friend class Part;
   State* state_;
 };
 

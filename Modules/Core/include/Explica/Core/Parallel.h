@@ -32,6 +32,10 @@ void parallelFor(std::size_t count, const Body& body) {
   parallelFor(count, 1024, body);
 }
 
+/// Calls body(i) for each i in [0, count), each of which has parallel loops of its own: as many
+/// side by side as there are threads.  A thread that waits within a body begins no other one.
+void parallelTasks(std::size_t count, const std::function<void(std::size_t)>& body);
+
 /// Sums map(begin, end) over blocks; partial sums are added in block order, so the result does not
 /// depend on the number of threads.  T needs operator+= .
 template <class T, class Map>

@@ -71,7 +71,7 @@ struct Record {
   std::filesystem::path out;        ///< where outputs went, absolute
   std::string started, ended;       ///< UTC, ISO 8601
   double seconds = 0;
-  double cpuSeconds = 0;
+  double cpuSeconds = 0;  ///< of the process, with what else it did meanwhile
   std::uint64_t peakMemoryBytes = 0;
   int threads = 0;
   std::string threadsBecause;  ///< what decided the number of threads
