@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -44,24 +44,17 @@ TEST(Parallel, ExceptionReachesTheCaller) {
                std::runtime_error);
 }
 
-/// Each task waits for loops of its own meanwhile, in which a thread could take the next one up.
-TEST(Parallel, AThreadIsInOneTaskAtATime) {
+TEST(Parallel, TasksHaveLoopsOfTheirOwn) {
   for (const int threads : {1, 2, 4}) {
     setThreadCount(threads);
-    std::atomic<int> done = 0, nested = 0;
-    parallelTasks(64, [&](std::size_t) {
-      thread_local int depth = 0;
-      nested += depth;
-      ++depth;
-      for (int loop = 0; loop < 20; ++loop) {
-        done += static_cast<int>(parallelSum(64, 1, 0.0, [](std::size_t i, std::size_t) {
-          return std::sin(static_cast<double>(i)) < 2 ? 1.0 : 0.0;
-        }));
-      }
-      --depth;
-    });
-    EXPECT_EQ(done, 64 * 20 * 64);
-    EXPECT_EQ(nested, 0);
+    std::array<double, 5> sums{};
+    parallelTasks(sums.size(), [&](std::size_t task) { sums[task] = sumOfSquareRoots(); });
+    for (const double sum : sums) EXPECT_EQ(sum, sumOfSquareRoots());
+    EXPECT_THROW(parallelTasks(2,
+                               [](std::size_t task) {
+                                 if (task == 1) throw std::runtime_error("stop");
+                               }),
+                 std::runtime_error);
   }
   setThreadCount(0);
 }
