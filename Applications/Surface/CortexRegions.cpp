@@ -8,6 +8,7 @@
 #include "Explica/IO/RegionFiles.h"
 #include "Explica/Maps/Regions.h"
 #include "Explica/Segmentation/Atlas.h"
+#include "Explica/Segmentation/VoxelBox.h"
 #include "Explica/Surface/Regions.h"
 #include "Explica/Surface/Summary.h"
 
@@ -87,7 +88,8 @@ CortexRegions readRegions(Context& context, const SurfaceSettings& s,
   } else if (s.atlas) {
     io::VolumeReadOptions reading = s.reading;
     reading.dimension = 3;
-    regions.atlas = scaled(readLabels(context, "atlas", *s.atlas, reading), s.scale);
+    const Volume<Label> atlas = scaled(readLabels(context, "atlas", *s.atlas, reading), s.scale);
+    regions.atlas = segmentation::VoxelBox::around(atlas, 0).of(atlas);
     const auto legend = s.atlasLegend ? std::optional<std::filesystem::path>(*s.atlasLegend)
                                       : io::findLegend(*s.atlas);
     if (legend) {

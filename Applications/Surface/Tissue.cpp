@@ -49,7 +49,7 @@ TissueInputs readTissue(Context& context, const SurfaceSettings& s) {
     }
     return inputs;
   }
-  const Volume<float> inner =
+  Volume<float> inner =
       scaled(readScalars(context, "inner-level", *s.innerLevel, reading), s.scale);
   inputs.grid = inner.grid;
   Volume<float> outer, grey;
@@ -68,11 +68,11 @@ TissueInputs readTissue(Context& context, const SurfaceSettings& s) {
                    [](Label label) { return static_cast<std::uint8_t>(label != 0); });
   }
   auto step = context.step("tissue");
-  const Volume<float> white = surface::sharesOf(inner, s.level, "inner-level");
+  const Volume<float> white = surface::sharesOf(std::move(inner), s.level, "inner-level");
   Volume<float> tissue;
-  if (s.outerLevel) tissue = surface::sharesOf(outer, s.level, "outer-level");
+  if (s.outerLevel) tissue = surface::sharesOf(std::move(outer), s.level, "outer-level");
   if (s.greyShare) {
-    tissue = surface::addShares(white, surface::sharesOf(grey, s.level, "grey-share"));
+    tissue = surface::addShares(white, surface::sharesOf(std::move(grey), s.level, "grey-share"));
   }
   inputs.tissue = surface::tissueFromShares(white, tissue, insulated, s.tissue, context.monitor());
   return inputs;
@@ -106,15 +106,15 @@ SurfaceImages readImages(Context& context, const SurfaceSettings& s) {
 }
 
 surface::CorticalSurfaces makeSurfaces(Context& context, const SurfaceSettings& s,
-                                       const TissueInputs& inputs, const SurfaceImages& images) {
+                                       const TissueInputs& inputs, SurfaceImages& images) {
   auto step = context.step("surfaces");
   if (inputs.block) {
     return surface::buildSheets(*inputs.block, s.surface, context.monitor());
   }
   const surface::CorticalTissue& tissue = inputs.tissue;
   if (tissue.hasGrey && images.first) {
-    const Volume<float>* second = images.second ? &*images.second : nullptr;
-    return surface::buildSurfaces(tissue, {*images.first, second}, s.surface, context.monitor());
+    return surface::buildSurfaces(tissue, {std::move(*images.first), std::move(images.second)},
+                                  s.surface, context.monitor());
   }
   if (tissue.hasGrey) return surface::buildSurfaces(tissue, s.surface, context.monitor());
   context.warn("no grey matter given: only the white surface is made");

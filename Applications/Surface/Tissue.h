@@ -30,9 +30,10 @@ struct SurfaceImages {
 /// Brings the second image onto the first by a rigid motion.
 [[nodiscard]] SurfaceImages readImages(Context& context, const SurfaceSettings& s);
 
+/// Lets go of the images' voxels once the borders are placed.
 [[nodiscard]] surface::CorticalSurfaces makeSurfaces(Context& context, const SurfaceSettings& s,
                                                      const TissueInputs& inputs,
-                                                     const SurfaceImages& images);
+                                                     SurfaceImages& images);
 
 /// Tells what of the labels is cut, guessed or not known.
 /// @param sheet  which is meant to end at the image's edge, and says which vertices it concerns

@@ -465,36 +465,24 @@ namespace {
 
 constexpr double kBrightestFluid = 10;  // over white matter, of any contrast
 
-CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
-                       const SurfaceOptions& options, const Monitor& monitor) {
-  if (!given.hasGrey) {
-    throw InvalidInput("grey: no voxel found; middle and outer surface need grey matter");
-  }
-  if (!(options.fluid >= 0 && options.fluid <= kBrightestFluid)) {
-    throw InvalidInput("fluid: " + std::to_string(options.fluid) +
-                       " given; 0, or the brightness of fluid over that of white matter, at most " +
-                       std::to_string(static_cast<int>(kBrightestFluid)));
-  }
-  // An image tells where white matter ends in cortex that was taken for it.
-  const bool isSearched = images != nullptr && given.byBrightness;
-  const CorticalTissue tissue = isSearched ? withCortexAllAround(given) : given;
-  CorticalSurfaces result;
-  result.white = extractWhite(tissue, options, monitor.part(0, 0.5));
-  result.seconds = result.white.seconds;
+/// Borders, middle and outer surface, thickness and columns, with the ribbon between the borders.
+void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> images,
+                  const SurfaceOptions& options, const Monitor& monitor, CorticalSurfaces& result) {
   Stopwatch watch;
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
-  if (images != nullptr) {
+  // A mesh whose edges are longer cuts off what the grid shows.
+  constexpr double kFineEdge = 1.5;  // voxels
+  const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
+  const bool byMesh = images && isFine;
+  if (images) {
     const correspondence::Ribbon ofLabels =
         solve(annulusOf(ribbon.tissue, silent(monitor)), monitor.part(0.5, 0.6));
     takePaths(result.white.mesh, RibbonPaths(ofLabels), ribbon);
     placeByImage(*images, options.fluid, ribbon, result);
+    images.reset();
     result.seconds.image = watch.lap();
   }
-  // A mesh whose edges are longer cuts off what the grid shows.
-  constexpr double kFineEdge = 1.5;  // voxels
-  const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  const bool byMesh = images != nullptr && isFine;
   const correspondence::Ribbon first =
       solve(byMesh ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
                    : annulusOf(ribbon.tissue, silent(monitor)),
@@ -516,9 +504,30 @@ CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
   }
   const RibbonVoxels voxels(between ? *between : first);
   takeThickness(ribbon, voxels, result);
-  mendTriangles(result);
   result.columns = columnsOf(voxels.annulus, voxels.found);
   result.seconds.growing = watch.lap();
+}
+
+CorticalSurfaces build(const CorticalTissue& given, std::optional<BorderImages> images,
+                       const SurfaceOptions& options, const Monitor& monitor) {
+  if (!given.hasGrey) {
+    throw InvalidInput("grey: no voxel found; middle and outer surface need grey matter");
+  }
+  if (!(options.fluid >= 0 && options.fluid <= kBrightestFluid)) {
+    throw InvalidInput("fluid: " + std::to_string(options.fluid) +
+                       " given; 0, or the brightness of fluid over that of white matter, at most " +
+                       std::to_string(static_cast<int>(kBrightestFluid)));
+  }
+  // An image tells where white matter ends in cortex that was taken for it.
+  const bool isSearched = images && given.byBrightness;
+  const CorticalTissue tissue = isSearched ? withCortexAllAround(given) : given;
+  CorticalSurfaces result;
+  result.white = extractWhite(tissue, options, monitor.part(0, 0.5));
+  result.seconds = result.white.seconds;
+  growInRibbon(tissue, std::move(images), options, monitor, result);
+  Stopwatch watch;
+  mendTriangles(result);
+  result.seconds.growing += watch.lap();
 
   monitor.progress(0.96, "curvature and depth");
   const std::array<std::function<void()>, 3> measures = {
@@ -536,12 +545,12 @@ CorticalSurfaces build(const CorticalTissue& given, const BorderImages* images,
 
 CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const SurfaceOptions& options,
                                const Monitor& monitor) {
-  return build(tissue, nullptr, options, monitor);
+  return build(tissue, std::nullopt, options, monitor);
 }
 
-CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, const BorderImages& images,
+CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, BorderImages images,
                                const SurfaceOptions& options, const Monitor& monitor) {
-  return build(tissue, &images, options, monitor);
+  return build(tissue, std::move(images), options, monitor);
 }
 
 }  // namespace explica::surface

@@ -233,7 +233,7 @@ std::string structureOf(const Roles& roles, const TissueOptions& options) {
 
 }  // namespace
 
-Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
+Volume<float> sharesOf(Volume<float> scalars, std::optional<double> level,
                        const std::string& name) {
   const auto [low, high] = std::minmax_element(scalars.data.begin(), scalars.data.end());
   if (scalars.size() == 0) throw InvalidInput(name + ": empty volume");
@@ -260,12 +260,11 @@ Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level
     }
   }
   const double sign = above <= below ? 1 : -1;
-  Volume<float> share(scalars.grid);
-  parallelFor(share.size(), 1 << 18, [&](std::size_t v) {
-    share[v] =
+  parallelFor(scalars.size(), 1 << 18, [&](std::size_t v) {
+    scalars[v] =
         static_cast<float>(std::clamp(0.5 + sign * (scalars[v] - boundary) / scale, 0.0, 1.0));
   });
-  return share;
+  return scalars;
 }
 
 Volume<float> addShares(const Volume<float>& a, const Volume<float>& b) {

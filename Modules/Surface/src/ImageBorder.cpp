@@ -370,7 +370,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   const Look look(paths, masked, inner, topology, edge, voxel, SenseOf::White);
   for (const bool outer : {false, true}) {
     Sight sight = look.at(outer, options.fluid, step, options);
-    if (outer && images.second != nullptr) {
+    if (outer && images.second) {
       const MaskedImage second = beyondMask(*images.second, kBeyondMask * voxel);
       const Look other(paths, second, inner, topology, edge, voxel, SenseOf::Outer);
       const double fluid = fluidInSecond(look.tissues(), options.fluid, other.tissues());

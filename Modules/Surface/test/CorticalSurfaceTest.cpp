@@ -541,8 +541,8 @@ TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
   const Volume<float> t2 = seen(75, 105, 10, 200), flair = seen(85, 105, 10, 15);
   SurfaceOptions options;
   options.faces = 6000;
-  const auto beyond = [&](const BorderImages& images) {  // mean, mm, below the dura
-    const auto made = buildSurfaces(tissue, images, options);
+  const auto beyond = [&](BorderImages images) {  // mean, mm, below the dura
+    const auto made = buildSurfaces(tissue, std::move(images), options);
     expectSound(made.pial);
     double sum = 0, count = 0;
     for (Eigen::Index v = 0; v < made.pial.vertexCount(); ++v) {
@@ -555,8 +555,8 @@ TEST(CorticalSurface, ASecondImageShowsDuraThatTheFirstDoesNot) {
   };
   const double alone = beyond(t1);
   EXPECT_GT(alone, 0.4);
-  EXPECT_LT(beyond({t1, &t2}), 0.6 * alone);  // the labels keep a say
-  EXPECT_LT(beyond({t1, &flair}), 0.6 * alone);
+  EXPECT_LT(beyond({t1, t2}), 0.6 * alone);  // the labels keep a say
+  EXPECT_LT(beyond({t1, flair}), 0.6 * alone);
 }
 
 TEST(CorticalSurface, AnOuterBorderBeyondASinussWallIsFound) {

@@ -9,6 +9,8 @@
 #include "Explica/Surface/TopologyCorrection.h"
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace explica::surface {
@@ -125,14 +127,14 @@ struct CorticalSurfaces {
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 
-/// What borders are placed by.
+/// What borders are placed by; let go of once that is done.
 struct BorderImages {
   // NOLINTNEXTLINE(google-explicit-constructor): most have one
-  BorderImages(const Volume<float>& only, const Volume<float>* besides = nullptr)
-      : image(only), second(besides) {}
-  const Volume<float>& image;   ///< any contrast between white and grey matter and fluid, as a T1
-  const Volume<float>* second;  ///< in its frame, with a contrast between grey matter and fluid, as
-                                ///< a T2 or FLAIR; null: none
+  BorderImages(Volume<float> only, std::optional<Volume<float>> besides = {})
+      : image(std::move(only)), second(std::move(besides)) {}
+  Volume<float> image;  ///< any contrast between white and grey matter and fluid, as a T1
+  std::optional<Volume<float>> second;  ///< in its frame, with a contrast between grey matter and
+                                        ///< fluid, as a T2 or FLAIR
 };
 
 /// As above, the borders placed by the image whose labels these are: white and outer border lie
@@ -144,8 +146,7 @@ struct BorderImages {
 /// neighbourhood may have put it into bright cortex.  Topology is kept, and nothing meets.
 /// A second image has its say at the outer border.
 /// @param images  on any grids
-[[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue,
-                                             const BorderImages& images,
+[[nodiscard]] CorticalSurfaces buildSurfaces(const CorticalTissue& tissue, BorderImages images,
                                              const SurfaceOptions& options = {},
                                              const Monitor& monitor = {});
 

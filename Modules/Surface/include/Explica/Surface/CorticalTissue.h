@@ -157,7 +157,7 @@ struct CorticalTissue : TissueFacts {
 /// side that holds the smaller part of the volume's border: so the sign of distances does not
 /// matter.
 /// @throws InvalidInput  the level is nowhere crossed; names the values' range
-[[nodiscard]] Volume<float> sharesOf(const Volume<float>& scalars, std::optional<double> level,
+[[nodiscard]] Volume<float> sharesOf(Volume<float> scalars, std::optional<double> level,
                                      const std::string& name);
 
 /// Sum of two shares on one grid, at most 1.
