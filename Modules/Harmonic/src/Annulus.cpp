@@ -522,19 +522,29 @@ class RoleTable {
     return rest_;
   }
 
-  /// @throws InvalidInput  a label that is named is not among those present
-  void requirePresent(const std::set<Label>& present) const {
+  /// @throws InvalidInput  a role none of whose labels is among those present
+  void requirePresent(const std::set<Label>& present, const Monitor& monitor) const {
     std::vector<Label> missing;
+    std::set<Code> filled;
     for (const auto& [value, code] : table_) {
-      if (!present.contains(value)) missing.push_back(value);
+      if (present.contains(value)) {
+        filled.insert(code);
+      } else {
+        missing.push_back(value);
+      }
     }
     if (missing.empty()) return;
+    const std::string absent = "label " + listed(missing) + " is absent";
+    if (std::all_of(table_.begin(), table_.end(),
+                    [&](const auto& entry) { return filled.contains(entry.second); })) {
+      monitor.warn(absent + "; the other labels of its list are used");
+      return;
+    }
     constexpr std::size_t kMostListed = 40;
     std::vector<Label> found(present.begin(), present.end());
     const bool many = found.size() > kMostListed;
     if (many) found.resize(kMostListed);
-    throw InvalidInput("label " + listed(missing) + " is absent; the file has " + listed(found) +
-                       (many ? ", ..." : ""));
+    throw InvalidInput(absent + "; the file has " + listed(found) + (many ? ", ..." : ""));
   }
 
  private:
@@ -644,10 +654,10 @@ void forVoxels(const Box& box, const Visit& visit) {
   });
 }
 
-BoxOfSites sitesOf(const Volume<Label>& labels, const LabelRoles& roles) {
+BoxOfSites sitesOf(const Volume<Label>& labels, const LabelRoles& roles, const Monitor& monitor) {
   checkGrid(labels.grid);
   const RoleTable table(roles);
-  table.requirePresent(labelsIn(labels));
+  table.requirePresent(labelsIn(labels), monitor);
   const Box box = boxAroundTissue(labels, table);
   return {labels.grid, box, sitesIn(box, labels, table)};
 }
@@ -675,12 +685,12 @@ Annulus annulusOf(BoxOfSites found, const AnnulusOptions& options, const Monitor
 
 Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
                           const AnnulusOptions& options, const Monitor& monitor) {
-  return annulusOf(sitesOf(labels, roles), options, monitor);
+  return annulusOf(sitesOf(labels, roles, monitor), options, monitor);
 }
 
 Annulus annulusFromLabels(Volume<Label>&& labels, const LabelRoles& roles,
                           const AnnulusOptions& options, const Monitor& monitor) {
-  BoxOfSites found = sitesOf(labels, roles);
+  BoxOfSites found = sitesOf(labels, roles, monitor);
   std::vector<Label>().swap(labels.data);
   return annulusOf(std::move(found), options, monitor);
 }

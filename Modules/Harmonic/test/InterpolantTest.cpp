@@ -220,6 +220,24 @@ TEST(Annulus, SaysWhichLabelsTheFileHas) {
   }
 }
 
+TEST(Annulus, LabelsThatAreAbsentBesideOthersOfTheirListAreNamed) {
+  Volume<Label> labels(centredGrid({12, 12, 24}, Vector(2, 2, 1)), 0);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.subscripts(v);
+    const double r = labels.grid.toWorld(Vector(i, j, k)).norm();
+    labels[v] = r < 5 ? 1 : r < 9 ? 2 : 0;
+  }
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& message) { warnings.push_back(message); };
+  const Annulus found = annulusFromLabels(labels, {{4, 1, 5}, {2}, {}, {}}, {}, monitor);
+  const Annulus asked = annulusFromLabels(labels, {{1}, {2}, {}, {}});
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("label 4, 5 is absent"), std::string::npos) << warnings[0];
+  EXPECT_EQ(found.place, asked.place);
+  EXPECT_EQ(found.fractions, asked.fractions);
+}
+
 TEST(Annulus, RefusesTissueThatTouchesOneSideOnly) {
   Volume<Label> labels(centredGrid({12, 12, 12}, Vector::Ones()), 0);
   labels(2, 2, 2) = 1;

@@ -17,13 +17,19 @@
 namespace explica::surface {
 namespace {
 
-void requirePresent(const Histogram& histogram, const Labels& labels, const std::string& name) {
+/// @throws InvalidInput  none of the labels is there; of some that are not the reader is told
+void requirePresent(const Histogram& histogram, const Labels& labels, const std::string& name,
+                    const Monitor& monitor) {
+  std::size_t missing = 0;
+  std::string absent = name + ": label ";
   for (const Label label : labels) {
-    if (!histogram.contains(label)) {
-      throw InvalidInput(name + ": label " + std::to_string(label) + " absent (found " +
-                         listOf(histogram) + ")");
-    }
+    if (histogram.contains(label)) continue;
+    absent += (missing++ == 0 ? "" : ", ") + std::to_string(label);
   }
+  if (missing == 0) return;
+  absent += " absent";
+  if (missing == labels.size()) throw InvalidInput(absent + " (found " + listOf(histogram) + ")");
+  monitor.warn(absent + "; the other labels of its list are used");
 }
 
 constexpr std::size_t kVoxelGrain = 1 << 18;  // voxels a task
@@ -163,17 +169,16 @@ void takeNamed(const TissueOptions& options, Roles& roles) {
   for (Labels* labels : {&roles.white, &roles.grey, &roles.fill}) sortUnique(*labels);
 }
 
-void checkRoles(const Histogram& histogram, const TissueOptions& options, const Roles& roles) {
-  if (options.white.empty()) {
-    if (countOf(histogram, roles.white) == 0) {
-      requirePresent(histogram, {roles.white.front()}, "white");
-    }
-  } else {
-    requirePresent(histogram, roles.white, "white");
+void checkRoles(const Histogram& histogram, const TissueOptions& options, const Roles& roles,
+                const Monitor& monitor) {
+  // A preset names more labels than most images have.
+  const Monitor ofWhite = options.white.empty() ? Monitor{} : monitor;
+  requirePresent(histogram, roles.white, "white", ofWhite);
+  requirePresent(histogram, roles.grey, "grey", monitor);
+  if (!options.fill.empty()) requirePresent(histogram, roles.fill, "fill", monitor);
+  if (!options.insulated.empty()) {
+    requirePresent(histogram, roles.insulated, "insulated", monitor);
   }
-  requirePresent(histogram, roles.grey, "grey");
-  if (!options.fill.empty()) requirePresent(histogram, roles.fill, "fill");
-  if (!options.insulated.empty()) requirePresent(histogram, roles.insulated, "insulated");
   for (const Label label : roles.grey) {
     if (std::binary_search(roles.white.begin(), roles.white.end(), label) ||
         std::binary_search(roles.fill.begin(), roles.fill.end(), label)) {
@@ -302,7 +307,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   Roles roles = rolesOf(masks.preset, histogram, options);
   if (options.white.empty()) masks.unknownLabels = unknownTo(masks.preset, histogram);
   takeNamed(options, roles);
-  checkRoles(histogram, options, roles);
+  checkRoles(histogram, options, roles, monitor);
   masks.structure = structureOf(roles, options);
 
   monitor.progress(0.1, "labels");

@@ -181,6 +181,32 @@ TEST_P(LabelPresetOf, FindsEachHemispheresParts) {
 INSTANTIATE_TEST_SUITE_P(Programs, LabelPresetOf, testing::ValuesIn(conventions()),
                          [](const auto& tested) { return tested.param.name; });
 
+TEST(TissueLabels, ThoseAbsentBesideOthersOfTheirListAreNamed) {
+  Grid grid;
+  grid.size = {16, 16, 16};
+  grid.spacing = Vector(1, 1, 2);
+  Volume<Label> labels(grid, 0);
+  for (std::size_t v = 0; v < labels.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    const int r = std::max({std::abs(s[0] - 8), std::abs(s[1] - 8), std::abs(s[2] - 8)});
+    labels[v] = r < 4 ? 5 : r < 6 ? 7 : 0;
+  }
+  std::vector<std::string> warnings;
+  Monitor monitor;
+  monitor.onWarning = [&](const std::string& message) { warnings.push_back(message); };
+  TissueOptions options;
+  options.white = {4, 5, 6};
+  options.grey = {7, 8};
+  const TissueMasks masks = masksFromLabels(labels, options, monitor);
+  EXPECT_EQ(masks.whiteVoxels, 343);
+  EXPECT_EQ(masks.greyVoxels, 1331 - 343);
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_NE(warnings[0].find("white: label 4, 6 absent"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("grey: label 8 absent"), std::string::npos) << warnings[1];
+  options.grey = {8, 9};
+  EXPECT_THROW((void)masksFromLabels(labels, options), InvalidInput);
+}
+
 TEST(LabelPreset, OfAMacaqueTemplateIsNotGuessed) {
   const auto nmt = std::find_if(conventions().begin(), conventions().end(),
                                 [](const Convention& c) { return c.name == "Nmt"; });

@@ -177,9 +177,10 @@ struct LevelOptions {
 /// Annulus of a label volume.  The boundaries are the smoothest surfaces that leave every voxel
 /// centre on its own side: of all places between the centres of two neighbouring voxels of
 /// different label, those that bend the surface least.
-/// @throws InvalidInput  a named label is absent (the message lists those present), no tissue, no
-///                       inner or outer region, roles that overlap, or no piece of tissue touches
-///                       both sides
+/// Labels that are absent beside others of their role are warned of.
+/// @throws InvalidInput  no label of a role is present (the message lists those that are), no
+///                       tissue, no inner or outer region, roles that overlap, or no piece of
+///                       tissue touches both sides
 [[nodiscard]] Annulus annulusFromLabels(const Volume<Label>& labels, const LabelRoles& roles,
                                         const AnnulusOptions& options = {},
                                         const Monitor& monitor = {});

@@ -103,7 +103,8 @@ struct CorticalTissue : TissueFacts {
 /// least white matter, meet within white matter: so the cut crosses the callosum near its middle,
 /// and gyri that bulge over the plane stay whole.
 ///
-/// @throws InvalidInput  a label absent, both hemispheres present and none chosen, nothing left
+/// @throws InvalidInput  no label of a list present, both hemispheres present and none chosen,
+/// nothing left
 ///                       after separation: with the numbers found
 [[nodiscard]] TissueMasks masksFromLabels(const Volume<Label>& labels,
                                           const TissueOptions& options = {},
