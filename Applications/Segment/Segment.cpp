@@ -3,6 +3,7 @@
 
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OutermostLayer.h"
 #include "Explica/Provenance/Doubts.h"
 #include "Explica/Segmentation/Disagreement.h"
 #include "Explica/Segmentation/HeadContrast.h"
@@ -64,6 +65,17 @@ void compareWithTemplate(Context& context, const segmentation::TissueSegmentatio
               "seg.nii.gz there";
   context.doubt(provenance::kWhiteUnlikeTemplate, static_cast<std::size_t>(found.voxels),
                 sentence.str());
+}
+
+/// Boxes leave room around the brain but where the image ends.
+void doubtCutBrain(Context& context, const Volume<Label>& tissues) {
+  std::size_t cut = 0;
+  forOutermost(tissues.grid,
+               [&](int i, int j, int k) { cut += tissues(i, j, k) > segmentation::kCsf; });
+  context.doubt(provenance::kTissueAtImageBorder, cut,
+                std::to_string(cut) +
+                    " voxels of grey and white matter lie in the image's outermost layer, which "
+                    "may cut the brain");
 }
 
 segmentation::TissueSegmentation findTissue(Context& context, const SegmentSettings& s,
@@ -164,6 +176,7 @@ Termination run(Context& context, const SegmentSettings& s) {
   judgeTissue(judge, image, tissue, head.brainShare, summary);
   image = {};
   compareWithTemplate(context, tissue, head, summary);
+  doubtCutBrain(context, tissue.labels);
   writeTissue(context, boxes, tissue);
   if (head.atlas) makeHemispheres(context, s, boxes, tissue, *head.atlas, summary);
   context.results(summary);

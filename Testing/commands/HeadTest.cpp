@@ -87,6 +87,35 @@ TEST(CortexBesideDura, IsTheSameWhereverBrightnessCountsFrom) {
               madeOf(folder / "phantom/t1.nii.gz", "counts"), 1e-3);
 }
 
+TEST(BrainInItsImage, IsTheReadersToLookAtWhereTheImageCutsIt) {
+  TemporaryFolder folder;
+  auto run = explica({"phantom", "cortex", "--size", "48", "--dura", "1", "--dura-gap", "1",
+                      "--ventricle", "4", "--noise", "3", "--out", folder / "phantom"});
+  ASSERT_EQ(run.exitCode, 0) << run;
+  const Volume<float> whole = io::readScalars(folder / "phantom/t1.nii.gz").volume;
+  for (const bool cuts : {false, true}) {
+    Volume<float> image = whole;
+    if (cuts) {
+      image.grid.size[2] /= 2;
+      image.data.resize(image.grid.voxelCount());
+    }
+    io::writeVolume(folder / "t1.nii.gz", image);
+    run = explica({"segment", folder / "t1.nii.gz", "--template", "none", "--accept",
+                   "brain-volume", "--force", "--out", folder / "segment"});
+    ASSERT_EQ(run.exitCode, 0) << run;
+    const Volume<Label> tissues = io::readLabels(folder / "segment/seg.nii.gz").volume;
+    const auto& size = tissues.grid.size;
+    int atTop = 0;
+    for (int j = 0; j < size[1]; ++j) {
+      for (int i = 0; i < size[0]; ++i) atTop += tissues(i, j, size[2] - 1) >= 2;
+    }
+    EXPECT_EQ(atTop > 0, cuts);
+    const auto summary = readJson(folder / "segment/summary.json");
+    EXPECT_EQ(summary.value("tissue_at_image_border", -1), atTop);
+    EXPECT_EQ(summary["warnings"].dump().find("may cut the brain") != std::string::npos, cuts);
+  }
+}
+
 /// What a scanner with turned axes and voxels of that size sees: means over what of the head is in
 /// them, and noise; 0 where their middle is outside.
 Volume<float> seenBy(const Vector& spacing, const Volume<float>& fine) {

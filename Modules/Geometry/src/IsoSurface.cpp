@@ -4,6 +4,7 @@
 #include "Explica/Geometry/IsoSurface.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OutermostLayer.h"
 
 #include <Eigen/LU>
 
@@ -125,18 +126,12 @@ class Marcher {
 };
 
 void requireNegativeBorder(const Volume<float>& level) {
-  const auto& n = level.grid.size;
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
-      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
-        if (level(i, j, k) > 0) {
-          throw InvalidInput(
-              "level: positive on the border of its box; widen the box by a layer of background");
-        }
-      }
+  forOutermost(level.grid, [&](int i, int j, int k) {
+    if (level(i, j, k) > 0) {
+      throw InvalidInput(
+          "level: positive on the border of its box; widen the box by a layer of background");
     }
-  }
+  });
 }
 
 }  // namespace

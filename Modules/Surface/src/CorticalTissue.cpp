@@ -4,6 +4,7 @@
 #include "Explica/Surface/CorticalTissue.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/OutermostLayer.h"
 #include "Explica/Core/Parallel.h"
 #include "Hemispheres.h"
 #include "LabelPresets.h"
@@ -254,16 +255,9 @@ Volume<float> sharesOf(Volume<float> scalars, std::optional<double> level,
                            ? *high
                            : (isShare ? 2 * std::max(boundary - *low, *high - boundary)
                                       : 4 * scalars.grid.spacing.maxCoeff());
-  const auto& n = scalars.grid.size;
   std::int64_t above = 0, below = 0;
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
-      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
-        ++(scalars(i, j, k) > boundary ? above : below);
-      }
-    }
-  }
+  forOutermost(scalars.grid,
+               [&](int i, int j, int k) { ++(scalars(i, j, k) > boundary ? above : below); });
   const double sign = above <= below ? 1 : -1;
   parallelFor(scalars.size(), 1 << 18, [&](std::size_t v) {
     scalars[v] =

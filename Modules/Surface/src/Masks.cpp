@@ -3,6 +3,7 @@
 
 #include "Masks.h"
 
+#include "Explica/Core/OutermostLayer.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -28,16 +29,8 @@ std::int64_t countIn(const Mask& mask) {
 }
 
 std::int64_t countOnEdge(const Mask& mask) {
-  const auto& n = mask.grid.size;
   std::int64_t count = 0;
-  for (int k = 0; k < n[2]; ++k) {
-    for (int j = 0; j < n[1]; ++j) {
-      const bool wholeRow = k == 0 || j == 0 || k == n[2] - 1 || j == n[1] - 1;
-      for (int i = 0; i < n[0]; i += wholeRow ? 1 : std::max(1, n[0] - 1)) {
-        count += mask(i, j, k) != 0;
-      }
-    }
-  }
+  forOutermost(mask.grid, [&](int i, int j, int k) { count += mask(i, j, k) != 0; });
   return count;
 }
 
