@@ -10,6 +10,7 @@
 #include "Explica/Ventricle/Pictures.h"
 #include "Explica/Ventricle/Reference.h"
 #include "Explica/Ventricle/Slices.h"
+#include "Explica/Ventricle/Stack.h"
 #include "Explica/Ventricle/Summary.h"
 
 #include <nlohmann/json.hpp>
@@ -31,7 +32,7 @@ struct HeartSettings {
 void declare(Declaration& d, HeartSettings& s) {
   d.synopsis("the left ventricle's wall over time: thickness, 17 segments, volumes, pictures")
       .description(
-          R"(Reads short-axis label volumes, one file with all frames or a file a frame, and measures the wall of each. Where slices are much thicker than pixels, thickness is measured slice by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), slices that the valve plane cuts and the apical cap are found, drawn and left out of the means, with a count. The right ventricle's label tells where the 17 segments begin. Papillary muscles belong to whatever label they have.)")
+          R"(Reads short-axis label volumes, one file with all frames or a file a frame, and measures the wall of each. Slices may be stacked along any axis of the file. Where they are much thicker than pixels, thickness is measured slice by slice and corrected for how obliquely each slice cuts the wall, by the neighbouring slices; in isotropic volumes, in space. Places where the ring is open (outflow tract), slices that the valve plane cuts and the apical cap are found, drawn and left out of the means, with a count. The right ventricle's label tells where the 17 segments begin. Papillary muscles belong to whatever label they have.)")
       .reference("Cerqueira et al. 2002, Circulation 105(4):539-542 (17 segments)")
       .reference("Kawel et al. 2012, Circ Cardiovasc Imaging 5(4):500-508 (normal thickness)")
       .reference(
@@ -146,7 +147,11 @@ std::string thicknessFile(int number) {
   return printed("thickness_frame-%04d.nii.gz", number);
 }
 
-void writeVolumes(Context& context, const ventricle::Beat& beat) {
+/// @param stack  the axis along which the input's slices are stacked
+void writeVolumes(Context& context, const ventricle::Beat& beat, int stack) {
+  const auto write = [&](const std::string& name, auto volume) {
+    io::writeVolume(context.output(name), ventricle::withAxesBack(std::move(volume), stack));
+  };
   for (const ventricle::Frame& frame : beat.frames) {
     if (!frame.measures) continue;
     const ventricle::WallThickness& wall = *frame.measures;
@@ -154,13 +159,12 @@ void writeVolumes(Context& context, const ventricle::Beat& beat) {
     for (std::size_t n = 0; n < shown.size(); ++n) {
       if (!wall.counts(n)) shown[n] = 0;
     }
-    io::writeVolume(context.output(thicknessFile(frame.number)),
-                    harmonic::spread(wall.annulus, shown));
+    write(thicknessFile(frame.number), volumeOf(harmonic::spread(wall.annulus, shown)));
   }
-  io::writeVolume(context.output("segments.nii.gz"), beat.atDiastole().segments->segmentOf);
+  write("segments.nii.gz", beat.atDiastole().segments->segmentOf);
   Volume<std::uint8_t> leftOut = beat.atDiastole().measures->reasons;
   for (std::uint8_t& why : leftOut.data) why = why == 255 ? 0 : why;
-  io::writeVolume(context.output("left_out.nii.gz"), leftOut);
+  write("left_out.nii.gz", std::move(leftOut));
 }
 
 /// @param images  one a frame of the beat, or none
@@ -178,20 +182,36 @@ void writeSlices(Context& context, const ventricle::Beat& beat,
 }
 
 void writeOutputs(Context& context, const ventricle::Beat& beat,
-                  const std::vector<Volume<float>>& images) {
+                  const std::vector<Volume<float>>& images, int stack) {
   writeTextFile(context.output("frames.tsv"), ventricle::frameTable(beat));
   writeTextFile(context.output("segments.tsv"), ventricle::segmentTable(beat));
   writeTextFile(context.output("slices.tsv"), ventricle::sliceTable(beat));
   writeTextFile(context.output("reference.tsv"), ventricle::referenceTable(beat));
   writePicture(context, "bullseye", ventricle::bullseye(beat));
   writeSlices(context, beat, images);
-  writeVolumes(context, beat);
+  writeVolumes(context, beat, stack);
+}
+
+/// What follows takes slices to lie along the last axis.
+/// @return the axis along which they are stacked in the files
+int stackSlicesLast(const HeartSettings& s, std::vector<Volume<Label>>& frames,
+                    std::vector<Volume<float>>& images) {
+  const int stack = ventricle::sliceAxis(frames.front().grid);
+  if (stack != 2 && s.heart.orientation.imageAxis) {
+    throw InvalidInput(
+        "--rv-insertion-image-axis is for slices stacked along the last axis, and these are along "
+        "another; give --rv-insertion");
+  }
+  for (auto& frame : frames) frame = ventricle::withLastAxis(std::move(frame), stack);
+  for (auto& image : images) image = ventricle::withLastAxis(std::move(image), stack);
+  return stack;
 }
 
 Termination run(Context& context, const HeartSettings& s) {
   std::vector<Volume<Label>> frames = readFrames(context, s.segmentations, s.reading);
   std::vector<Volume<float>> images =
       readImages(s.images, s.reading, frames.front().grid, frames.size());
+  const int stack = stackSlicesLast(s, frames, images);
   const ventricle::HeartRoles roles = ventricle::findRoles(frames, s.labels);
   for (Volume<Label>& frame : frames) frame = ventricle::relabelled(frame, roles);
   const Chosen chosen = chooseFrames(s.frames, frames);
@@ -210,7 +230,7 @@ Termination run(Context& context, const HeartSettings& s) {
   sayWhatIsOdd(context, beat);
   context.results(ventricle::HeartSummary{roles.how, &beat, judgeOpening(context, beat)});
   auto step = context.step("write");
-  writeOutputs(context, beat, shown);
+  writeOutputs(context, beat, shown, stack);
   return Termination::Finished;
 }
 

@@ -123,6 +123,49 @@ TEST(HeartCommand, TellsVolumesThicknessAndThickeningOfABeat) {
   EXPECT_EQ(explica({"report", folder / "out", "--out", folder / "shown"}).exitCode, 2);
 }
 
+/// The same voxels with another axis last.
+template <class T>
+Volume<T> storedAs(const Volume<T>& volume, const std::array<int, 3>& axes) {
+  Grid grid = volume.grid;
+  for (int a = 0; a < 3; ++a) {
+    grid.size[a] = volume.grid.size[axes[a]];
+    grid.spacing[a] = volume.grid.spacing[axes[a]];
+    grid.direction.col(a) = volume.grid.direction.col(axes[a]);
+  }
+  Volume<T> stored(grid);
+  for (std::size_t v = 0; v < volume.size(); ++v) {
+    const auto at = volume.grid.subscripts(v);
+    stored(at[axes[0]], at[axes[1]], at[axes[2]]) = volume[v];
+  }
+  return stored;
+}
+
+TEST(HeartCommand, SlicesMayBeStackedAlongAnyAxis) {
+  const TemporaryFolder folder;
+  makeBeat(folder, {"--tilt", "8"});
+  ASSERT_EQ(explica(heart(folder, {})).exitCode, 0);
+  fs::rename(folder / "out", folder / "asked");
+  std::vector<Volume<Label>> frames;
+  for (const char* name : {"beat/frame-0000.nii.gz", "beat/frame-0001.nii.gz"}) {
+    frames.push_back(io::readLabels(folder / name).volume);
+  }
+  for (const auto& axes : {std::array{2, 0, 1}, {1, 2, 0}}) {
+    io::writeVolume(folder / "beat/frame-0000.nii.gz", storedAs(frames[0], axes));
+    io::writeVolume(folder / "beat/frame-0001.nii.gz", storedAs(frames[1], axes));
+    const auto run = explica(heart(folder, {}));
+    ASSERT_EQ(run.exitCode, 0) << run;
+    for (const std::string table : {"frames.tsv", "segments.tsv", "slices.tsv"}) {
+      EXPECT_EQ(readText(folder / ("out/" + table)), readText(folder / ("asked/" + table)));
+    }
+    const std::string map = "thickness_frame-0000.nii.gz";
+    const auto found = io::readScalars(folder / ("out/" + map)).volume;
+    const auto asked = storedAs(io::readScalars(folder / ("asked/" + map)).volume, axes);
+    EXPECT_TRUE(sameGrid(found.grid, asked.grid));
+    EXPECT_EQ(found.data, asked.data);
+    EXPECT_EQ(explica(heart(folder, {"--rv-insertion-image-axis", "i-"})).exitCode, 2);
+  }
+}
+
 TEST(HeartCommand, ImagesLieBeneathTheBoundariesAndBeat) {
   const TemporaryFolder folder;
   makeBeat(folder);

@@ -3,6 +3,7 @@
 #include "Explica/Ventricle/LongAxis.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Ventricle/Stack.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -161,10 +162,19 @@ double gapAtBase(const LongAxis& axis, const Volume<Label>& heart) {
   return std::max(0.0, 0.5 * (heart.grid.spacing[2] * cosine - width * sine));
 }
 
+bool isThickAlong(const Grid& grid, int axis) {
+  return grid.spacing[axis] >=
+         kThick * std::max(grid.spacing[(axis + 1) % 3], grid.spacing[(axis + 2) % 3]);
+}
+
 }  // namespace
 
 bool hasThickSlices(const Grid& grid) {
-  return grid.spacing[2] >= kThick * std::max(grid.spacing[0], grid.spacing[1]);
+  return isThickAlong(grid, 2);
+}
+
+int sliceAxis(const Grid& grid) {
+  return isThickAlong(grid, 0) ? 0 : isThickAlong(grid, 1) ? 1 : 2;
 }
 
 Vector LongAxis::shiftAt(const Point& x) const {
