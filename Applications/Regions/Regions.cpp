@@ -42,7 +42,10 @@ void declare(Declaration& d, RegionsSettings& s) {
           "its deviation has n in the denominator. MeanCurv is the mean absolute value of the "
           "curvature map over the area; FreeSurfer takes it of a curvature that it does not write, "
           "so that the numbers differ; its last three columns are left out. regions.tsv has one "
-          "row for each region and measure; NAME_mean is weighted by area, NAME_mean_vertices not.")
+          "row for each region and measure; NAME_mean is weighted by area, NAME_mean_vertices not. "
+          "thickness_mean is weighted by the area of the middle surface, as everywhere, where "
+          "white "
+          "and pial surface are there, and leaves out where thickness is 0, which is not known.")
       .example("explica regions bert/surf --atlas bert/label/lh.aparc.annot --out tables",
                "The table of FreeSurfer's own surfaces, as tables/lh.aparc.stats and regions.tsv")
       .input("SURFACES", FileKind::Folder, "folder with surfaces and maps of a person", s.folder)
@@ -62,6 +65,7 @@ void declare(Declaration& d, RegionsSettings& s) {
 struct MeasuredSide {
   std::string structure;
   Eigen::VectorXd areas, volumes, thickness, curvature;  ///< V; empty: not known
+  Eigen::VectorXd middleAreas;                           ///< V; of the middle surface, else `areas`
   std::vector<io::VertexMap> maps;
 };
 
@@ -112,7 +116,14 @@ MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const st
     const TriangleMesh mesh = io::readSurface(*white, reading).mesh;
     count = mesh.vertexCount();
     found.areas = geometry::vertexAreas(mesh);
-    if (pial) found.volumes = maps::vertexVolumes(mesh, io::readSurface(*pial, reading).mesh);
+    if (pial) {
+      const TriangleMesh outer = io::readSurface(*pial, reading).mesh;
+      found.volumes = maps::vertexVolumes(mesh, outer);
+      const auto mid = file("graymid", "mid.surf.gii");
+      found.middleAreas = geometry::vertexAreas(
+          mid ? io::readSurface(*mid, reading).mesh
+              : TriangleMesh{0.5 * (mesh.positions + outer.positions), mesh.faces});
+    }
     found.curvature = mapOf(file("curv", "curvature.shape.gii"), count);
     if (found.curvature.size() == 0) found.curvature = maps::meanCurvature(mesh);
   } else {
@@ -123,6 +134,7 @@ MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const st
                        "': holds no white surface and no map of vertex areas of hemisphere " +
                        side + " (looked for ?h.white, white.surf.gii, ?h.area, area.shape.gii)");
   }
+  if (found.middleAreas.size() == 0) found.middleAreas = found.areas;
   if (found.volumes.size() == 0) found.volumes = mapOf(file("volume", "volume.shape.gii"), count);
   found.thickness = mapOf(file("thickness", "thickness.shape.gii"), count);
   for (const std::string& path : s.maps) {
@@ -168,9 +180,11 @@ void addMeasure(AtlasTable& table, const std::string& name, const std::string& u
   table.measures.push_back(std::move(measure));
 }
 
+/// @param overArea  of what the mean over area is taken
 void addMoments(AtlasTable& table, const std::string& name, const std::string& unit,
+                const std::vector<maps::RegionMoments>& overArea,
                 const std::vector<maps::RegionMoments>& moments) {
-  addMeasure(table, name + "_mean", unit, moments, [](const auto& r) { return r.meanOverArea; });
+  addMeasure(table, name + "_mean", unit, overArea, [](const auto& r) { return r.meanOverArea; });
   addMeasure(table, name + "_mean_vertices", unit, moments, [](const auto& r) { return r.mean; });
   addMeasure(table, name + "_sd_vertices", unit, moments,
              [](const auto& r) { return r.deviation; });
@@ -200,17 +214,20 @@ AtlasTable measured(const MeasuredSide& side, const io::LabelMap& labels) {
       table.rows[r].thicknessMean = thickness[r].mean;
       table.rows[r].thicknessDeviation = thickness[r].deviation;
     }
-    addMoments(table, "thickness", "mm", thickness);
+    const Eigen::VectorXd known = (side.thickness.array() > 0).select(side.thickness, kNaN);
+    addMoments(table, "thickness", "mm", momentsOf(labels, known, side.middleAreas), thickness);
   }
   if (side.curvature.size() > 0) {
     const auto bending = momentsOf(labels, side.curvature.cwiseAbs(), side.areas);
     for (std::size_t r = 0; r < bending.size(); ++r) {
       table.rows[r].meanCurvature = bending[r].meanOverArea;
     }
-    addMoments(table, "curvature", "mm^-1", momentsOf(labels, side.curvature, side.areas));
+    const auto curvature = momentsOf(labels, side.curvature, side.areas);
+    addMoments(table, "curvature", "mm^-1", curvature, curvature);
   }
   for (const io::VertexMap& map : side.maps) {
-    addMoments(table, map.name, map.unit, momentsOf(labels, map.values, side.areas));
+    const auto moments = momentsOf(labels, map.values, side.areas);
+    addMoments(table, map.name, map.unit, moments, moments);
   }
   return table;
 }
