@@ -73,7 +73,8 @@ void declare(Declaration& d, ResampleSettings& s) {
                     "(SURF,SURF; one left out: its sphere)"},
               s.areas)
       .inputOption("amounts", FileKind::VertexData,
-                   "maps of amounts at vertices, such as areas and volumes: their sums stay",
+                   "maps of amounts at vertices, such as areas and volumes: their sums stay, "
+                   "whatever --method",
                    s.amounts, "Weights")
       .option("Target",
               Field{"space", "",
@@ -227,9 +228,9 @@ std::vector<CarriedFile> readFiles(const ResampleSettings& s, const io::LoadedSu
   return files;
 }
 
-/// Weights of maps and labels, and those of surfaces.
+/// Weights of maps and labels, those of surfaces, and those of amounts.
 struct Weights {
-  maps::ResamplingWeights maps, surfaces;
+  maps::ResamplingWeights maps, surfaces, amounts;
   Eigen::VectorXd toAreas;  ///< mm^2, of the target's vertices
 };
 
@@ -252,7 +253,7 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
     case io::VertexFileKind::Maps:
       for (io::VertexMap& map : file.maps) {
         if (file.amounts) {
-          map.values = maps::resampleAmounts(weights.maps, weights.toAreas, map.values);
+          map.values = maps::resampleAmounts(weights.amounts, weights.toAreas, map.values);
         } else {
           map.values = maps::resampleMaps(weights.maps, map.values);
         }
@@ -275,8 +276,12 @@ Termination run(Context& context, const ResampleSettings& s) {
   const auto weightsBy = [&](maps::ResamplingMethod method) {
     return maps::resamplingWeights(from.mesh, target.sphere.mesh, method, fromAreas, toAreas);
   };
-  const Weights weights{weightsBy(s.method), weightsBy(maps::ResamplingMethod::Barycentric),
-                        toAreas};
+  using enum maps::ResamplingMethod;
+  Weights weights{weightsBy(s.method), weightsBy(Barycentric), {}, toAreas};
+  // By the others, what lies at a vertex that no target takes from would be lost.
+  if (!s.amounts.empty()) {
+    weights.amounts = s.method == Adaptive ? weights.maps : weightsBy(Adaptive);
+  }
   std::size_t count = 0;
   for (const CarriedFile& file : files) {
     checkpoint(context.monitor());

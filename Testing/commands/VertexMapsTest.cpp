@@ -240,6 +240,25 @@ TEST(Resample, KeepsEachFilesFormat) {
   EXPECT_NEAR(pial.positions.rowwise().norm().mean(), 14, 0.1);
 }
 
+TEST(Resample, SumsOfAmountsStayByEveryMethod) {
+  TemporaryFolder folder;
+  const TriangleMesh sphere = geometry::makeIcosphere(5, 10.0);
+  io::writeSurface(folder / "sphere.surf.gii", sphere);
+  const Eigen::VectorXd areas = geometry::vertexAreas(sphere);
+  for (const char* name : {"area.shape.gii", "map.shape.gii"}) {
+    io::writeGiftiShape(folder / name, {{"area", "mm^2", areas}}, "CortexLeft");
+  }
+  for (const char* method : {"adaptive", "barycentric", "nearest"}) {
+    const auto result =
+        explica({"resample", folder / "map.shape.gii", "--amounts", folder / "area.shape.gii",
+                 "--from", folder / "sphere.surf.gii", "--to", "fsaverage3", "--method", method,
+                 "--force", "--out", folder / "out"});
+    ASSERT_EQ(result.exitCode, 0) << result;
+    const auto found = io::readVertexMaps(folder / "out/area_space-fsaverage_den-642.shape.gii");
+    EXPECT_NEAR(found.front().values.sum(), areas.sum(), 1e-5 * areas.sum()) << method;
+  }
+}
+
 TEST(Resample, RefusesASphereThatIsNotInRegisterWithTheTargetsName) {
   TemporaryFolder folder;
   writeMapAndRegions(folder);
