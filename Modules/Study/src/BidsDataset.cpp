@@ -79,7 +79,10 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
       return label == participant.label || label == "sub-" + participant.label;
     };
     if (!labels.empty() && std::ranges::none_of(labels, wanted)) continue;
-    const std::vector<fs::path> sessions = foldersFrom(folder, "ses-");
+    std::vector<fs::path> sessions = foldersFrom(folder, "ses-");
+    // Of function or diffusion alone there is nothing to be measured.
+    const auto lacksAnat = [](const fs::path& session) { return !isFolder(session / "anat"); };
+    if (!std::ranges::all_of(sessions, lacksAnat)) std::erase_if(sessions, lacksAnat);
     if (sessions.empty()) participants.push_back(participantIn(dataset, folder, participant));
     for (const fs::path& session : sessions) {
       participant.session = session.filename().string().substr(4);

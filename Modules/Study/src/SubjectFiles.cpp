@@ -7,6 +7,7 @@
 #include "Explica/Core/Folders.h"
 
 #include <algorithm>
+#include <iterator>
 #include <system_error>
 
 namespace explica::study {
@@ -108,6 +109,23 @@ class AnatFolder {
     return packed ? packed : ending(end + ".nii", entity);
   }
 
+  /// Of several T1 images the first by name, those with a contrast agent last.
+  [[nodiscard]] Found t1(std::vector<std::string>& remarks) const {
+    std::vector<fs::path> found;
+    std::ranges::copy_if(files_, std::back_inserter(found), [](const fs::path& file) {
+      return endsWith(file.string(), "_T1w.nii.gz") || endsWith(file.string(), "_T1w.nii");
+    });
+    if (found.empty()) return std::nullopt;
+    std::ranges::stable_partition(found, [](const fs::path& file) {
+      return file.filename().string().find("_ce-") == std::string::npos;
+    });
+    if (found.size() > 1) {
+      remarks.push_back("of " + std::to_string(found.size()) + " T1 images " +
+                        found.front().filename().string() + " is used");
+    }
+    return found.front();
+  }
+
   [[nodiscard]] HemisphereFiles surfaces(const std::string& side,
                                          std::vector<std::string>& remarks) const {
     const std::string hemi = "_hemi-" + side;
@@ -155,7 +173,7 @@ SubjectFiles inAnatFolder(const fs::path& folder) {
   if (files.labels || files.left.white || files.right.white) return files;
 
   // A head as it is: a template says where the brain is, and which half is which.
-  files.t1 = brain ? brain : (whole ? whole : anat.volume("_T1w"));
+  files.t1 = brain ? brain : (whole ? whole : anat.t1(files.remarks));
   if (files.t1) {
     if (!brain && whole) files.mask = mask;
     return files;

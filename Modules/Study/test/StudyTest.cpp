@@ -67,6 +67,29 @@ TEST_F(Study, FindsWhatEachParticipantOffers) {
   EXPECT_EQ(found[3].input, folder_ / "sourcedata" / "freesurfer" / "sub-03");
 }
 
+TEST_F(Study, ASessionWithoutAnatomyIsNoFailureBesideOthersWithIt) {
+  put("dataset_description.json");
+  put("sub-01/ses-a/anat/sub-01_ses-a_T1w.nii.gz");
+  put("sub-01/ses-b/func/sub-01_ses-b_task-rest_bold.nii.gz");
+  put("sub-02/ses-a/dwi/sub-02_ses-a_dwi.nii.gz");
+  put("sourcedata/freesurfer/sub-01/mri/ribbon.mgz");
+  const auto found = findParticipants(folder_);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].name(), "sub-01_ses-a");
+  EXPECT_EQ(found[1].name(), "sub-02_ses-a");
+  EXPECT_NE(found[1].problem, "");
+}
+
+TEST_F(Study, OfSeveralImagesTheFirstWithoutContrastAgentIsUsedAndNamed) {
+  for (const char* file : {"ce-gadolinium_T1w.nii.gz", "run-1_T1w.nii.gz", "run-2_T1w.nii.gz"}) {
+    put("sub-01/anat/sub-01_" + std::string(file));
+  }
+  const SubjectFiles files = findSubjectFiles(folder_ / "sub-01");
+  EXPECT_EQ(files.t1, folder_ / "sub-01/anat/sub-01_run-1_T1w.nii.gz");
+  ASSERT_EQ(files.remarks.size(), 1u);
+  EXPECT_EQ(files.remarks[0], "of 3 T1 images sub-01_run-1_T1w.nii.gz is used");
+}
+
 TEST_F(Study, FindsTheFilesOfAFreeSurferSubject) {
   put("bert/mri/ribbon.mgz");
   put("bert/mri/aparc+aseg.mgz");

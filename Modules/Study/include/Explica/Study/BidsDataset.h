@@ -25,7 +25,8 @@ struct Participant {
 ///
 /// A participant's input is its `anat` folder, or `sourcedata/freesurfer/sub-01` where that folder
 /// holds neither surfaces nor FreeSurfer's segmentation (see findSubjectFiles).  A participant with
-/// nothing to start from is listed with its problem.
+/// nothing to start from is listed with its problem; sessions without `anat` beside others with it
+/// are not.
 ///
 /// @param labels  participants wanted, with or without "sub-"; empty: all
 /// @throws InvalidInput  no folder, no dataset_description.json, no participant, or one that is
