@@ -113,12 +113,16 @@ MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const st
   const auto white = file("white", "white.surf.gii"), pial = file("pial", "pial.surf.gii");
   found.areas = white ? Eigen::VectorXd() : mapOf(file("area", "area.shape.gii"), count);
   if (white) {
-    const TriangleMesh mesh = io::readSurface(*white, reading).mesh;
+    TriangleMesh mesh = io::readSurface(*white, reading).mesh;
     count = mesh.vertexCount();
     found.areas = geometry::vertexAreas(mesh);
     if (pial) {
       const TriangleMesh outer = io::readSurface(*pial, reading).mesh;
       found.volumes = maps::vertexVolumes(mesh, outer);
+      if (found.volumes.sum() < 0) {  // faces that run clockwise seen from outside
+        found.volumes = -found.volumes;
+        mesh.faces.col(1).swap(mesh.faces.col(2));
+      }
       const auto mid = file("graymid", "mid.surf.gii");
       found.middleAreas = geometry::vertexAreas(
           mid ? io::readSurface(*mid, reading).mesh

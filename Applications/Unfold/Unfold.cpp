@@ -14,6 +14,7 @@
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/IO/RegionFiles.h"
@@ -178,7 +179,12 @@ TriangleMesh readUsable(Context& context, const UnfoldSettings& s, io::SurfaceMe
   metadata.geometricType = "Inflated";
   metadata.secondary.clear();
   metadata.name = "unfolded";
-  return loaded.mesh;
+  TriangleMesh mesh = loaded.mesh;
+  if (condition.closedManifold() && geometry::enclosedVolume(mesh) < 0) {
+    context.info("faces run clockwise seen from outside: they are turned");
+    mesh.faces.col(1).swap(mesh.faces.col(2));
+  }
+  return mesh;
 }
 
 /// Memory that a step frees is taken again by the next: pages stay with the process, which would

@@ -414,6 +414,24 @@ TEST(UnfoldCommand, ByDefaultThePatchIsSeenAlongItsMeanNormal) {
   EXPECT_GT(seen.dot(normal.normalized()), std::cos(2.0 * kPi / 180));  // from the centroid
 }
 
+TEST(UnfoldCommand, APatchIsSeenFromOutsideWhicheverWayFacesRun) {
+  const TemporaryFolder folder;
+  const std::string surface = onFoldedSphere(folder)[1];
+  TriangleMesh mesh = io::readSurface(surface).mesh;
+  mesh.faces.col(1).swap(mesh.faces.col(2));
+  io::writeSurface(folder / "turned.surf.gii", mesh);
+  std::vector<nlohmann::ordered_json> found;
+  for (const std::string& file : {surface, folder / "turned.surf.gii"}) {
+    const auto result = explica({"unfold", file, "--center", "15.4,-7.7,18.6", "--radius", "9",
+                                 "--max-iterations", "2", "--force", "--out", folder / "out"});
+    ASSERT_EQ(result.exitCode, 3) << result;
+    found.push_back(readJson(folder / "out/summary.json"));
+  }
+  for (const char* key : {"visibility_initial", "visibility_final", "seen_final"}) {
+    EXPECT_NEAR(found[0][key].get<double>(), found[1][key].get<double>(), 1e-4) << key;
+  }
+}
+
 TEST(UnfoldCommand, ARegionThatFacesAllWaysNeedsADirection) {
   const TemporaryFolder folder;
   const TriangleMesh ball = geometry::makeIcosphere(3, 20.0);

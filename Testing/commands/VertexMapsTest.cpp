@@ -88,6 +88,23 @@ double measureOf(const fs::path& table, const std::string& region, const std::st
   return kNaN;
 }
 
+TEST(Regions, VolumeAndCurvatureAreTheSameWhicheverWayFacesRun) {
+  TemporaryFolder folder;
+  writeMapAndRegions(folder);
+  const std::vector<std::string> words = {
+      "regions", folder.path().string(), "--atlas", folder / "lh.regions.label.gii", "--force",
+      "--out",   folder / "out"};
+  ASSERT_EQ(explica(words).exitCode, 0);
+  const std::string asked = readText(folder / "out/regions.tsv");
+  for (const char* name : {"white.surf.gii", "pial.surf.gii"}) {
+    TriangleMesh mesh = io::readSurface(folder / name).mesh;
+    mesh.faces.col(1).swap(mesh.faces.col(2));
+    io::writeGiftiSurface(folder / name, mesh);
+  }
+  ASSERT_EQ(explica(words).exitCode, 0);
+  EXPECT_EQ(readText(folder / "out/regions.tsv"), asked);
+}
+
 // Weighed by the white surface, crowns count too little: a tenth of a millimetre in a real cortex.
 TEST(Regions, ThicknessIsTheMeanOverTheMiddleSurface) {
   TemporaryFolder folder;

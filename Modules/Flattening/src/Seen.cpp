@@ -5,6 +5,7 @@
 
 #include "Explica/Flattening/Comparison.h"
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
 #include <cmath>
@@ -21,10 +22,21 @@ Vector onSphere(int n, int count) {
   return {radius * std::cos(golden * n), radius * std::sin(golden * n), z};
 }
 
+/// With faces that run counter-clockwise, seen from above or from outside; an open surface that is
+/// not flat has no outside.
+TriangleMesh facingOut(TriangleMesh mesh, bool flat) {
+  const bool inward =
+      flat ? geometry::faceNormalVectors(mesh).col(2).sum() < 0
+           : geometry::inspectMesh(mesh).closedManifold() && geometry::enclosedVolume(mesh) < 0;
+  if (inward) mesh.faces.col(1).swap(mesh.faces.col(2));
+  return mesh;
+}
+
 }  // namespace
 
-double seenShare(const TriangleMesh& mesh, int viewpoints) {
-  const auto all = mesh.allFaces();
+double seenShare(const TriangleMesh& given, int viewpoints) {
+  const bool flat = isFlatMap(given, given.allFaces());
+  const TriangleMesh mesh = facingOut(given, flat);
   Point low = Point::Constant(kInfinity), high = -low;
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     for (int k = 0; k < 3; ++k) {
@@ -34,7 +46,7 @@ double seenShare(const TriangleMesh& mesh, int viewpoints) {
   }
   const Point centre = (low + high) / 2;
   const double distance = kDistance * (high - low).norm();
-  if (isFlatMap(mesh, all)) {
+  if (flat) {
     const Point above = centre + 100 * distance * Vector(0, 0, 1);
     return visibility::visibleFraction(mesh, visibility::viewpoint(above)).total;
   }

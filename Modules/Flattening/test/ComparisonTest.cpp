@@ -93,6 +93,14 @@ TEST(SeenShare, IsAllOfAConvexSurfaceAndNothingOfWhatLiesInside) {
   EXPECT_NEAR(seenShare(nested), 0.8, 0.001);  // areas as 4 to 1
 }
 
+TEST(SeenShare, IsTheSameWhicheverWayFacesRun) {
+  for (TriangleMesh mesh : {geometry::makeIcosphere(3), geometry::makeRectangle(5, 5, 1, 1)}) {
+    const double asked = seenShare(mesh);
+    mesh.faces.col(1).swap(mesh.faces.col(2));
+    EXPECT_EQ(seenShare(mesh), asked);
+  }
+}
+
 TEST(PatchTable, HasAreasAndWeightedMeansByRegion) {
   const TriangleMesh plane = geometry::makeRectangle(10, 10, 10, 10);
   VertexKeys regions(plane.vertexCount());
