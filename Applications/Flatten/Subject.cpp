@@ -9,6 +9,7 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Flattening/Disc.h"
 #include "Explica/Flattening/Selection.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/IO/PatchFile.h"
 #include "Explica/IO/RegionFiles.h"
@@ -89,6 +90,9 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     mesh.positions = reference.mesh.positions;
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
+  // Faces that run clockwise seen from outside would be laid out mirrored.
+  const bool closed = geometry::boundaryLoops(mesh.faces, mesh.vertexCount()).empty();
+  if (closed && geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
   subject.faces = mesh.allFaces();
   if (s.cuts == kOfTemplate) {
     subject.cuts = readTemplateCuts(context, s, mesh);

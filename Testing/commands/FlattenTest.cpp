@@ -480,6 +480,30 @@ TEST_F(FlattenCommand, ClosedSurfacesAndStrangersAreRefusedWithARemedy) {
 }
 
 /// A cap of a sphere with regions of two files.
+TEST(FlattenSides, AMapIsSeenFromOutsideWhicheverWayFacesRun) {
+  const TemporaryFolder folder;
+  const TriangleMesh ball = geometry::makeIcosphere(4, 30);
+  TriangleMesh turned = ball;
+  turned.faces.col(1).swap(turned.faces.col(2));
+  for (const TriangleMesh& mesh : {ball, turned}) {
+    io::writeSurface(folder / "ball.surf.gii", mesh);
+    const auto made = explica({"flatten", folder / "ball.surf.gii", "--center", "0,0,30",
+                               "--radius", "15", "--force", "--out", folder / "flat"});
+    ASSERT_EQ(made.exitCode, 0) << made;
+    const Positions flat = io::readSurface(folder / "flat/flat.surf.gii").mesh.positions;
+    int mirrored = 0;
+    for (Eigen::Index f = 0; f < ball.faceCount(); ++f) {
+      if (ball.corner(f, 0).z() < 28 || ball.corner(f, 1).z() < 28 || ball.corner(f, 2).z() < 28) {
+        continue;
+      }
+      const Vector a = flat.row(ball.faces(f, 0)), b = flat.row(ball.faces(f, 1)),
+                   c = flat.row(ball.faces(f, 2));
+      mirrored += (b - a).cross(c - a).z() < 0;
+    }
+    EXPECT_EQ(mirrored, 0);
+  }
+}
+
 TEST(FlattenRegions, KeepNamesAndColoursOfEachFile) {
   TemporaryFolder folder;
   const TriangleMesh sphere = geometry::makeIcosphere(4, 30);

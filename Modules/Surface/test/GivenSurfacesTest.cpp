@@ -55,6 +55,18 @@ TEST(GivenSurfaces, TakesOverAndAddsWhatIsMissing) {
   EXPECT_THROW((void)adoptSurfaces(white, geometry::makeIcosphere(3, 13.0)), InvalidInput);
 }
 
+TEST(GivenSurfaces, FoldsAreTheSameWhicheverWayFacesRun) {
+  TriangleMesh white = geometry::makeIcosphere(3, 20);
+  TriangleMesh pial = geometry::makeIcosphere(3, 23);
+  const CorticalSurfaces asked = adoptSurfaces(white, pial);
+  for (TriangleMesh* mesh : {&white, &pial}) mesh->faces.col(1).swap(mesh->faces.col(2));
+  const CorticalSurfaces found = adoptSurfaces(white, pial);
+  EXPECT_LT((found.curvature - asked.curvature).norm(), 1e-9);
+  EXPECT_LT((found.sulcalDepth - asked.sulcalDepth).norm(), 1e-9);
+  EXPECT_LT(found.curvature.mean(), 0);  // of what bulges outwards
+  EXPECT_EQ(found.white.mesh.faces, asked.white.mesh.faces);
+}
+
 TEST(Regions, AreThoseOfTheVoxelsWithinTheRibbon) {
   const TriangleMesh white = sphere(10), pial = sphere(13);
   Grid grid;
