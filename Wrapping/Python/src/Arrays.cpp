@@ -6,6 +6,7 @@
 #include "Explica/Core/Errors.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace explica::python {
@@ -25,13 +26,18 @@ Grid gridOf(const py::array& values, const Eigen::Matrix4d& affine) {
 Volume<Label> labelVolume(const py::array& values, const Eigen::Matrix4d& affine) {
   Volume<Label> volume;
   volume.grid = gridOf(values, affine);
-  if (values.dtype().kind() == 'f') {
+  const char kind = values.dtype().kind();
+  const bool fits = kind == 'b' || (kind == 'i' && values.itemsize() <= 4) ||
+                    (kind == 'u' && values.itemsize() < 4);
+  if (!fits) {
+    constexpr double kMost = std::numeric_limits<Label>::max();
     const auto scalars = py::array_t<double, py::array::f_style | py::array::forcecast>(values);
     for (py::ssize_t n = 0; n < scalars.size(); ++n) {
       const double value = scalars.data()[n];
-      if (value != std::rint(value)) {
+      if (value != std::rint(value) || std::abs(value) > kMost) {
         throw InvalidInput("labels: value " + std::to_string(value) +
-                           " is not a whole number; pass a segmentation, not probabilities");
+                           " is not a whole number of 32 bits; pass a segmentation, not "
+                           "probabilities");
       }
     }
   }

@@ -111,6 +111,8 @@ class Tissue(unittest.TestCase):
             explica.thickness(labels, affine, inner=[7], tissue=[2])
         with self.assertRaisesRegex(ValueError, "whole number"):
             explica.thickness(labels + 0.5, affine, inner=[1], tissue=[2])
+        with self.assertRaisesRegex(ValueError, "whole number of 32 bits"):
+            explica.thickness(labels.astype(np.int64) + 2**32, affine, inner=[1], tissue=[2])
 
     def test_keyboard_interrupt_comes_out(self):
         import signal
