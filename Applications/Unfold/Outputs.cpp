@@ -37,7 +37,10 @@ Measures measure(const Unfolded& u) {
   Measures m;
   m.reference = {u.before.positions, after.faces};
   m.distortion = unfolding::measureDistortion(m.reference, after.positions, faces);
-  m.seenAfter = visibility::visibleFraction(after, u.view);
+  m.seenAfter =
+      after.faceCount() == u.before.faceCount()
+          ? visibility::visibleFractionAfter(after, u.view, u.before.positions, u.seenBefore)
+          : visibility::visibleFraction(after, u.view);
   m.moved = faces;
   m.moved.insert(m.moved.end(), u.result.collar.begin(), u.result.collar.end());
   std::sort(m.moved.begin(), m.moved.end());
@@ -122,7 +125,7 @@ unfolding::FrameSummary writeFrames(Context& context, const Unfolded& u, const M
   for (std::size_t n = 0; n < u.result.frames.size(); ++n) {
     const TriangleMesh frame{unfolding::roundedToSingle(u.result.frames[n].positions),
                              u.result.mesh.faces};
-    most = std::max(most, unfolding::crossingsAfterMotion(frame, moved, before).size());
+    most = std::max(most, geometry::findSelfIntersections(frame, moved, before).size());
     visibilities.push_back(u.result.frames[n].visibility);
     io::writeGiftiSurface(context.output(printed("frames/frame-%04zu.surf.gii", n)), frame,
                           u.metadata);

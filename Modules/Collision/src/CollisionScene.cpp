@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -151,12 +152,14 @@ class MeetingFilter {
   std::vector<Meeting> kept_;
 };
 
-/// By kind, first and second: a pass that counts, and what few have the same first.
+/// By kind, first and second: a pass that counts, in about as many bins, and what few share one.
 void sortMeetings(std::vector<Meeting>& meetings, std::size_t firstCount) {
-  std::vector<std::size_t> begin(2 * firstCount + 1, 0);
+  const int shift = std::bit_width(firstCount / (meetings.size() + 1));
+  const std::size_t bins = (firstCount >> shift) + 1;
+  std::vector<std::size_t> begin(2 * bins + 1, 0);
   const auto bin = [&](const Meeting& m) {
-    return static_cast<std::size_t>(m.pair.first) +
-           (m.pair.kind == PairKind::VertexFace ? 0 : firstCount);
+    return (static_cast<std::size_t>(m.pair.first) >> shift) +
+           (m.pair.kind == PairKind::VertexFace ? 0 : bins);
   };
   for (const Meeting& m : meetings) ++begin[bin(m) + 1];
   for (std::size_t n = 1; n < begin.size(); ++n) begin[n] += begin[n - 1];
@@ -167,7 +170,7 @@ void sortMeetings(std::vector<Meeting>& meetings, std::size_t firstCount) {
     if (begin[n + 1] - begin[n] < 2) continue;
     std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin[n]),
               sorted.begin() + static_cast<std::ptrdiff_t>(begin[n + 1]),
-              [](const Meeting& a, const Meeting& b) { return a.pair.second < b.pair.second; });
+              [](const Meeting& a, const Meeting& b) { return a.pair < b.pair; });
   }
   meetings = std::move(sorted);
 }

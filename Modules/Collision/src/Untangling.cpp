@@ -75,34 +75,45 @@ std::vector<Group> groupsOf(const TriangleMesh& mesh, const geometry::MeshTopolo
   return result;
 }
 
+/// Faces with one of the vertices, ascending.
+std::vector<std::int32_t> facesAround(const geometry::MeshTopology& topology,
+                                      const std::vector<std::int32_t>& vertices) {
+  std::vector<std::int32_t> faces;
+  for (const std::int32_t v : vertices) {
+    const auto around = topology.vertexFaces[v];
+    faces.insert(faces.end(), around.begin(), around.end());
+  }
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  return faces;
+}
+
 /// The place of one group: every face that the moving ones can reach, on vertices of its own.
 class Place {
  public:
   Place(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
-        const geometry::BoxTree& tree, const Group& group, double largestMove)
+        const std::vector<geometry::Box>& boxes, const Group& group, double largestMove)
       : group_(group) {
-    std::vector<std::int32_t> moving;
-    for (const std::int32_t v : group.free) {
-      const auto around = topology.vertexFaces[v];
-      moving.insert(moving.end(), around.begin(), around.end());
-    }
-    std::ranges::sort(moving);
-    moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+    const std::vector<std::int32_t> moving = facesAround(topology, group.free);
     double sum = 0;
     for (const std::int32_t f : moving) {
       for (int k = 0; k < 3; ++k) sum += (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm();
     }
     edge_ = sum / (3 * static_cast<double>(moving.size()));
     cap_ = largestMove * edge_;
-    std::vector<std::int32_t> reachable = moving;
+    geometry::Box all;
+    std::vector<geometry::Box> reach;
     for (const std::int32_t f : moving) {
-      geometry::Box box = tree.boxes()[f];
-      box.min().array() -= cap_;
-      box.max().array() += cap_;
-      tree.forOverlaps(box, [&](std::int32_t g) { reachable.push_back(g); });
+      reach.emplace_back(boxes[f].min().array() - cap_, boxes[f].max().array() + cap_);
+      all.extend(reach.back());
     }
-    std::ranges::sort(reachable);
-    reachable.erase(std::unique(reachable.begin(), reachable.end()), reachable.end());
+    std::vector<std::int32_t> reachable;
+    for (std::size_t f = 0; f < boxes.size(); ++f) {
+      const auto meets = [&](const geometry::Box& box) { return box.intersects(boxes[f]); };
+      if (meets(all) && std::ranges::any_of(reach, meets)) {
+        reachable.push_back(static_cast<std::int32_t>(f));
+      }
+    }
     part_ = geometry::extractFaces(mesh, reachable);
 
     unknown_.assign(part_.vertexOrigin.size(), -1);
@@ -333,13 +344,14 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
   Untangling result;
   result.positions = mesh.positions;
   result.before = result.after = geometry::findSelfIntersections(mesh);
-  if (result.before.empty()) return result;
+  if (!isConcerned(result.before, options.concerned)) return result;
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   TriangleMesh now = mesh;
-  geometry::BoxTree tree(geometry::faceBoxes(now));
+  std::vector<geometry::Box> boxes = geometry::faceBoxes(now);
   for (int rings = 1; rings <= options.largestRings && isConcerned(result.after, options.concerned);
        ++rings) {
     const auto groups = groupsOf(now, topology, result.after, rings);
+    std::vector<bool> moved(boxes.size(), false);
     for (std::size_t n = 0; n < groups.size() && !monitor.shouldStop(); ++n) {
       const Group& group = groups[n];
       // Most groups part with their first ring.
@@ -347,16 +359,20 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
                                std::pow(2.0, rings - 1),
                        "crossings");
       if (!isConcerned(group.pairs, options.concerned)) continue;
-      const Place place(now, topology, tree, group, options.largestMove);
+      const Place place(now, topology, boxes, group, options.largestMove);
       Best best(place, group.pairs.size());
       descend(place, options, best);
       smooth(place, best);
       if (!best.get()) continue;
-      const Positions moved = drawnBack(place, *best.get());
-      for (const std::int32_t v : place.free()) now.positions.row(place.origin(v)) = moved.row(v);
-      tree.refit(geometry::faceBoxes(now));
+      const Positions mended = drawnBack(place, *best.get());
+      for (const std::int32_t v : place.free()) now.positions.row(place.origin(v)) = mended.row(v);
+      for (const std::int32_t f : facesAround(topology, group.free)) {
+        moved[f] = true;
+        boxes[f].setEmpty();
+        for (int k = 0; k < 3; ++k) boxes[f].extend(now.corner(f, k));
+      }
     }
-    result.after = geometry::findSelfIntersections(now);
+    result.after = geometry::findSelfIntersections(now, moved, result.after);
   }
   result.positions = std::move(now.positions);
   result.noteMoves(mesh.positions);

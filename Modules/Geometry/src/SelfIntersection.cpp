@@ -5,12 +5,14 @@
 
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/BoundsSearch.h"
+#include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/TriangleIntersection.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace explica::geometry {
 namespace {
@@ -122,10 +124,32 @@ std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh) {
 
 std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
                                             const std::vector<bool>& faceMarked) {
+  const auto boxOf = [&](std::int32_t f) {
+    Box box(Point(mesh.corner(f, 0)));
+    return box.extend(Point(mesh.corner(f, 1))).extend(Point(mesh.corner(f, 2)));
+  };
   std::vector<std::int32_t> marked, others;
-  for (std::int32_t f = 0; f < mesh.faceCount(); ++f)
-    (faceMarked[f] ? marked : others).push_back(f);
+  Box reach;
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+    if (!faceMarked[f]) continue;
+    marked.push_back(f);
+    reach.extend(boxOf(f));
+  }
+  for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+    if (!faceMarked[f] && reach.intersects(boxOf(f))) others.push_back(f);
+  }
   return intersectingPairs(mesh, marked, others);
+}
+
+std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
+                                            const std::vector<bool>& faceMoved,
+                                            std::span<const FacePair> before) {
+  std::vector<FacePair> pairs = findSelfIntersections(mesh, faceMoved);
+  std::ranges::copy_if(before, std::back_inserter(pairs), [&](const FacePair& pair) {
+    return !faceMoved[pair[0]] && !faceMoved[pair[1]];
+  });
+  std::ranges::sort(pairs);
+  return pairs;
 }
 
 }  // namespace explica::geometry

@@ -111,6 +111,11 @@ Contacts::Contacts(const PatchSetup& setup, const UnfolderOptions& options)
 void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
   scene_ = std::make_unique<collision::CollisionScene>(TriangleMesh{positions, setup.mesh.faces},
                                                        markedOf(positions.rows(), setup.moving));
+  largestCoordinate_ = 0;
+  for (Eigen::Index v = 0; v < positions.rows(); ++v) {
+    if (setup.unknown[v] >= 0) continue;
+    largestCoordinate_ = std::max(largestCoordinate_, positions.row(v).cwiseAbs().maxCoeff());
+  }
 }
 
 void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {

@@ -27,6 +27,8 @@ class Contacts {
 
   [[nodiscard]] const collision::CollisionScene& scene() const { return *scene_; }
   [[nodiscard]] double range() const { return range_; }
+  /// Of the vertices that stand, mm.
+  [[nodiscard]] double largestCoordinate() const { return largestCoordinate_; }
 
   /// The pairs' barriers, in their order, which has to be ascending.
   [[nodiscard]] std::vector<collision::Contact> contactsOf(
@@ -47,6 +49,7 @@ class Contacts {
 
   Positions start_;
   double range_;
+  double largestCoordinate_ = 0;
   std::unique_ptr<collision::CollisionScene> scene_;
   /// Of pairs nearer at the start than range_, ascending.
   std::vector<std::pair<collision::Pair, double>> ranges_;

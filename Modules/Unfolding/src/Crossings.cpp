@@ -57,15 +57,6 @@ CrossingAccount countDetached(const TriangleMesh& original, const Region& region
 
 }  // namespace
 
-std::vector<FacePair> crossingsAfterMotion(const TriangleMesh& mesh, const std::vector<bool>& moved,
-                                           std::span<const FacePair> before) {
-  std::vector<FacePair> pairs = geometry::findSelfIntersections(mesh, moved);
-  std::copy_if(before.begin(), before.end(), std::back_inserter(pairs),
-               [&](const FacePair& pair) { return !moved[pair[0]] && !moved[pair[1]]; });
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
 CrossingAccount countCrossings(const TriangleMesh& original, const Region& region,
                                const UnfoldResult& result, std::span<const FacePair> before) {
   if (result.mesh.faceCount() != original.faceCount()) {
@@ -73,7 +64,7 @@ CrossingAccount countCrossings(const TriangleMesh& original, const Region& regio
   }
   const std::vector<bool> moved = movedFaces(result);
   CrossingAccount account;
-  account.after = crossingsAfterMotion(result.mesh, moved, before);
+  account.after = geometry::findSelfIntersections(result.mesh, moved, before);
   account.added = countNew(account.after, before);
   account.withRest = static_cast<std::size_t>(
       std::count_if(account.after.begin(), account.after.end(),

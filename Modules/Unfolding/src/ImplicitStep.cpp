@@ -96,7 +96,7 @@ void ImplicitStep::findHidingFaces() {
   const PhaseClock clock(now_.phases.visibility);
   Patch& patch = u_.setup.patch;
   const std::vector<float> over =
-      visibility::standingOver({state_.positions, u_.setup.mesh.faces}, u_.setup.region.faces,
+      visibility::standingOver(state_.positions, u_.setup.mesh.faces, u_.setup.region.faces,
                                u_.setup.collar, patch.room.axis);
   for (std::size_t f = 0; f < over.size(); ++f) {
     PatchFace& face = patch.faces[patch.regionFaces + f];
@@ -200,8 +200,11 @@ Positions ImplicitStep::cappedMotion(const Positions& direction) const {
 
 bool ImplicitStep::search(const Motion& motion, const std::vector<Contact>& onTheWay) {
   double taken = motion.safe;
+  trial_ = state_.positions;
   for (int halving = 0; halving < kMaxHalvings && taken > 0; ++halving, taken *= 0.5) {
-    trial_ = state_.positions + taken * motion.by;
+    for (const std::int32_t v : u_.setup.moving) {
+      trial_.row(v) = state_.positions.row(v) + taken * motion.by.row(v);
+    }
     now_.objectiveAfter =
         u_.objective.value(u_.configurationAt(trial_, onTheWay), u_.strengths(), now_);
     if (now_.objectiveAfter <=

@@ -28,8 +28,11 @@ collision::AdvanceOptions advanceFrom(const Contacts& contacts, const Positions&
                                       const Positions& motion) {
   collision::AdvanceOptions options;
   options.keptDistance = kTouching * contacts.range();
-  options.leastDistance = std::sqrt(3.0) * std::numeric_limits<float>::epsilon() *
-                          (x.cwiseAbs() + motion.cwiseAbs()).maxCoeff();
+  double largest = contacts.largestCoordinate();
+  for (const std::int32_t v : contacts.scene().movingVertices()) {
+    largest = std::max(largest, (x.row(v).cwiseAbs() + motion.row(v).cwiseAbs()).maxCoeff());
+  }
+  options.leastDistance = std::sqrt(3.0) * std::numeric_limits<float>::epsilon() * largest;
   return options;
 }
 

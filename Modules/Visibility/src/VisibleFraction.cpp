@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <string>
 
 namespace explica::visibility {
@@ -47,15 +48,26 @@ Eigen::VectorXd areasOf(const TriangleMesh& mesh) {
   return areas;
 }
 
+/// Where positions count from, for single precision, and how far from there any is.
+struct Frame {
+  Point middle;
+  double radius;  ///< mm
+};
+
+Frame frameOf(const Positions& positions) {
+  const Point low = positions.colwise().minCoeff().transpose();
+  const Point high = positions.colwise().maxCoeff().transpose();
+  return {(low + high) / 2, (high - low).norm() / 2};
+}
+
 /// Rays from samples of faces to the viewpoints.
 class Rays {
  public:
-  Rays(const TriangleMesh& mesh, const Viewpoints& viewpoints, int subdivision)
+  Rays(const TriangleMesh& mesh, const Viewpoints& viewpoints, int subdivision, const Frame& frame)
       : mesh_(mesh),
         viewpoints_(viewpoints),
-        low_(mesh.positions.colwise().minCoeff().transpose()),
-        high_(mesh.positions.colwise().maxCoeff().transpose()),
-        occluders_(mesh, centre()),
+        frame_(frame),
+        occluders_(mesh, frame.middle),
         samples_(subTriangleCentroids(subdivision)) {}
 
   /// Shares of a face's area: what is seen, and what arrives of the flux.
@@ -64,8 +76,7 @@ class Rays {
     double arriving = 0;
   };
   [[nodiscard]] Share of(Eigen::Index face) const {
-    const Point middle = centre();
-    const double radius = (high_ - low_).norm() / 2;
+    const auto& [middle, radius] = frame_;
     const Point a = mesh_.corner(face, 0) - middle;
     const Point b = mesh_.corner(face, 1) - middle;
     const Point c = mesh_.corner(face, 2) - middle;
@@ -106,11 +117,9 @@ class Rays {
   }
 
  private:
-  [[nodiscard]] Point centre() const { return (low_ + high_) / 2; }
-
   const TriangleMesh& mesh_;
   const Viewpoints& viewpoints_;
-  Point low_, high_;
+  Frame frame_;
   Occluders occluders_;
   std::vector<Vector> samples_;
 };
@@ -125,39 +134,85 @@ void requireInputs(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
   }
 }
 
-/// The listed faces, and behind them all others that may hide them: those that reach into the
-/// cylinder from a ball about the listed ones to a viewpoint.
-TriangleMesh withWhatMayHide(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
-                             const Viewpoints& viewpoints) {
-  std::vector<bool> listed(static_cast<std::size_t>(mesh.faceCount()), false);
-  Point low = Point::Constant(kInfinity), high = -low;
-  for (const std::int32_t f : faces) {
-    listed[f] = true;
-    for (int k = 0; k < 3; ++k) {
-      low = low.cwiseMin(mesh.corner(f, k));
-      high = high.cwiseMax(mesh.corner(f, k));
-    }
-  }
-  const Point middle = (low + high) / 2;
-  const double radius = (high - low).norm() / 2;
-  const auto mayHide = [&](Eigen::Index f) {
-    const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
-    const double size = std::max((b - a).norm(), (c - a).norm());
-    for (const Point& eye : viewpoints.points) {
-      const Vector axis = (eye - middle).normalized();
-      if ((a - middle - axis.dot(a - middle) * axis).norm() <= radius + size) return true;
-    }
-    return false;
-  };
-  std::vector<std::int32_t> chosen = faces;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    if (!listed[f] && mayHide(f)) chosen.push_back(static_cast<std::int32_t>(f));
-  }
-  TriangleMesh part{mesh.positions, Faces(static_cast<Eigen::Index>(chosen.size()), 3)};
-  for (std::size_t n = 0; n < chosen.size(); ++n) {
-    part.faces.row(n) = mesh.faces.row(chosen[n]);
+/// Some faces of a surface, each on corners of its own.
+TriangleMesh partOf(const Positions& positions, const Faces& faces,
+                    std::span<const std::int32_t> chosen) {
+  const auto count = static_cast<Eigen::Index>(chosen.size());
+  TriangleMesh part{Positions(3 * count, 3), Faces(count, 3)};
+  for (Eigen::Index n = 0; n < 3 * count; ++n) {
+    part.positions.row(n) = positions.row(faces(chosen[n / 3], n % 3));
+    part.faces(n / 3, n % 3) = static_cast<std::int32_t>(n);
   }
   return part;
+}
+
+/// How far any point of a face is from its first corner.
+double sizeOf(const TriangleMesh& mesh, Eigen::Index f) {
+  const Point a = mesh.corner(f, 0), b = mesh.corner(f, 1), c = mesh.corner(f, 2);
+  return std::sqrt(std::max((b - a).squaredNorm(), (c - a).squaredNorm()));
+}
+
+/// Whether the way from the eye through a point, from `first` times to `last` times as far as that,
+/// comes nearer to a box than `margin`.
+bool passes(const Point& eye, const Point& through, double first, double last,
+            const Eigen::AlignedBox3d& box, double margin) {
+  for (int k = 0; k < 3; ++k) {
+    const double way = through[k] - eye[k];
+    const double low = (box.min()[k] - margin - eye[k]) / way;
+    const double high = (box.max()[k] + margin - eye[k]) / way;
+    first = std::max(first, std::min(low, high));
+    last = std::min(last, std::max(low, high));
+  }
+  return !(first > last);
+}
+
+/// Whether a face may stand on a way to the eye that passes a box: anywhere, or between both. The
+/// nearer it is to the eye, the more its size counts at the box.
+bool mayStandIn(const TriangleMesh& mesh, Eigen::Index f, const Point& eye, bool between,
+                const Eigen::AlignedBox3d& box, double margin) {
+  const Point corner = mesh.corner(f, 0);
+  const double size = sizeOf(mesh, f), distance = (corner - eye).norm();
+  if (!(distance > size)) return true;
+  const double farthest = box.exteriorDistance(eye) + box.diagonal().norm();
+  const double scale = std::max(1.0, farthest / (distance - size));
+  return passes(eye, corner, between ? 1 : 0, kInfinity, box, margin + scale * size);
+}
+
+/// The listed faces, and behind them all others that may stand on ways from them to the viewpoints.
+/// @param box      that these ways pass, as near as `margin`
+/// @param between  they begin there
+TriangleMesh withWhatMayHide(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
+                             const Viewpoints& viewpoints, const Eigen::AlignedBox3d& box,
+                             bool between, double margin) {
+  std::vector<bool> listed(static_cast<std::size_t>(mesh.faceCount()), false);
+  for (const std::int32_t f : faces) listed[f] = true;
+  std::vector<std::int32_t> chosen = faces;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    if (!listed[f] && std::ranges::any_of(viewpoints.points, [&](const Point& eye) {
+          return mayStandIn(mesh, f, eye, between, box, margin);
+        })) {
+      chosen.push_back(static_cast<std::int32_t>(f));
+    }
+  }
+  return partOf(mesh.positions, mesh.faces, chosen);
+}
+
+/// Vertices and the whole, of what the faces show.
+void addUp(const TriangleMesh& mesh, VisibleFraction& result) {
+  const Eigen::VectorXd areas = areasOf(mesh);
+  const double total = areas.sum();
+  result.total = total > 0 ? result.face.dot(areas) / total : 0;
+  result.vertex.setZero(mesh.vertexCount());
+  Eigen::VectorXd around = Eigen::VectorXd::Zero(mesh.vertexCount());
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      result.vertex[mesh.faces(f, k)] += result.face[f] * areas[f];
+      around[mesh.faces(f, k)] += areas[f];
+    }
+  }
+  for (Eigen::Index v = 0; v < around.size(); ++v) {
+    result.vertex[v] = around[v] > 0 ? result.vertex[v] / around[v] : 0;
+  }
 }
 
 double meanOver(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
@@ -190,7 +245,7 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
     throw InvalidInput("visible fraction: subdivision is " + std::to_string(options.subdivision) +
                        "; it must lie between 1 and 64");
   }
-  const Rays rays(mesh, viewpoints, options.subdivision);
+  const Rays rays(mesh, viewpoints, options.subdivision, frameOf(mesh.positions));
   VisibleFraction result;
   result.face.setZero(mesh.faceCount());
   result.arriving.setZero(mesh.faceCount());
@@ -200,29 +255,59 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
     result.face[f] = share.seen;
     result.arriving[f] = share.arriving;
   });
+  addUp(mesh, result);
+  return result;
+}
 
-  const Eigen::VectorXd areas = areasOf(mesh);
-  const double total = areas.sum();
-  result.total = total > 0 ? result.face.dot(areas) / total : 0;
-  result.vertex.setZero(mesh.vertexCount());
-  Eigen::VectorXd around = Eigen::VectorXd::Zero(mesh.vertexCount());
+VisibleFraction visibleFractionAfter(const TriangleMesh& mesh, const Viewpoints& viewpoints,
+                                     const Positions& stood, const VisibleFraction& before) {
+  requireInputs(mesh, viewpoints);
+  Frame frame = frameOf(stood);
+  frame.radius =
+      std::max(frame.radius,
+               (mesh.positions.rowwise() - frame.middle.transpose()).rowwise().norm().maxCoeff());
+  const TriangleMesh then{stood, mesh.faces};
+  Eigen::AlignedBox3d moved;  // about the faces that are not where they were, there and here
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    for (int k = 0; k < 3; ++k) {
-      result.vertex[mesh.faces(f, k)] += result.face[f] * areas[f];
-      around[mesh.faces(f, k)] += areas[f];
+    const auto stays = [&](std::int32_t v) { return mesh.positions.row(v) == stood.row(v); };
+    if (stays(mesh.faces(f, 0)) && stays(mesh.faces(f, 1)) && stays(mesh.faces(f, 2))) continue;
+    for (int k = 0; k < 3; ++k) moved.extend(mesh.corner(f, k)).extend(then.corner(f, k));
+  }
+  std::vector<std::int32_t> changed;
+  double largest = 0;
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    const double size = sizeOf(mesh, f);
+    if (std::ranges::none_of(viewpoints.points, [&](const Point& eye) {
+          return passes(eye, mesh.corner(f, 0), 0, 1, moved, size);
+        })) {
+      continue;
     }
+    changed.push_back(static_cast<std::int32_t>(f));
+    largest = std::max(largest, size);
   }
-  for (Eigen::Index v = 0; v < around.size(); ++v) {
-    result.vertex[v] = around[v] > 0 ? result.vertex[v] / around[v] : 0;
+  VisibleFraction result = before;
+  if (!changed.empty()) {
+    const TriangleMesh part = withWhatMayHide(mesh, changed, viewpoints, moved, false, 2 * largest);
+    const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision, frame);
+    parallelFor(changed.size(), kGrain, [&](std::size_t i) {
+      const Rays::Share share = rays.of(static_cast<Eigen::Index>(i));
+      result.face[changed[i]] = share.seen;
+      result.arriving[changed[i]] = share.arriving;
+    });
   }
+  addUp(mesh, result);
   return result;
 }
 
 double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                  const Viewpoints& viewpoints) {
   requireInputs(mesh, viewpoints);
-  const TriangleMesh part = withWhatMayHide(mesh, faces, viewpoints);
-  const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision);
+  Eigen::AlignedBox3d box;
+  for (const std::int32_t f : faces) {
+    for (int k = 0; k < 3; ++k) box.extend(mesh.corner(f, k));
+  }
+  const TriangleMesh part = withWhatMayHide(mesh, faces, viewpoints, box, true, 0);
+  const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision, frameOf(mesh.positions));
   const auto count = static_cast<Eigen::Index>(faces.size());
   Eigen::VectorXd seen(count);
   parallelFor(faces.size(), kGrain,
@@ -231,11 +316,12 @@ double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& face
   return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }
 
-std::vector<float> standingOver(const TriangleMesh& mesh, std::span<const std::int32_t> listed,
+std::vector<float> standingOver(const Positions& positions, const Faces& faces,
+                                std::span<const std::int32_t> listed,
                                 std::span<const std::int32_t> asked, const Vector& axis) {
-  TriangleMesh below{mesh.positions, mesh.faces(listed, Eigen::all)};
+  const TriangleMesh below = partOf(positions, faces, listed);
   requireInputs(below, viewpoint(axis));
-  const Point middle = mesh.corner(listed[0], 0);
+  const Point middle = below.corner(0, 0);
   const Occluders occluders(below, middle);
   std::vector<float> over(asked.size());
   constexpr std::size_t kAtOnce = Occluders::kPacket / 3;  // faces whose rays go together
@@ -248,10 +334,10 @@ std::vector<float> standingOver(const TriangleMesh& mesh, std::span<const std::i
     std::array<Point, 3 * kAtOnce> from;
     for (std::size_t n = 0; n < 3 * count; ++n) {
       const std::int32_t face = asked[first + n / 3];
-      from[n] = (4 * mesh.corner(face, n % 3) + mesh.corner(face, (n + 1) % 3) +
-                 mesh.corner(face, (n + 2) % 3)) /
-                    6 -
-                middle;
+      const auto corner = [&](std::size_t k) -> Point {
+        return positions.row(faces(face, static_cast<Eigen::Index>(k % 3))).transpose();
+      };
+      from[n] = (4 * corner(n) + corner(n + 1) + corner(n + 2)) / 6 - middle;
     }
     const std::uint32_t clear =
         occluders.clear({from.data(), 3 * count}, {by.data(), 3 * count},

@@ -5,6 +5,7 @@
 #include "Explica/Core/TriangleMesh.h"
 
 #include <array>
+#include <span>
 #include <vector>
 
 namespace explica::geometry {
@@ -19,5 +20,11 @@ using FacePair = std::array<std::int32_t, 2>;  ///< smaller face first
 /// As above, for pairs with at least one face marked.
 [[nodiscard]] std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
                                                           const std::vector<bool>& faceMarked);
+
+/// All pairs of a surface some faces of which have moved.
+/// @param before  pairs until then, sorted
+[[nodiscard]] std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
+                                                          const std::vector<bool>& faceMoved,
+                                                          std::span<const FacePair> before);
 
 }  // namespace explica::geometry

@@ -27,11 +27,4 @@ struct CrossingAccount {
                                              const UnfoldResult& result,
                                              std::span<const geometry::FacePair> before);
 
-/// Pairs of a surface some faces of which have moved.
-/// @param moved   F flags
-/// @param before  pairs before they moved, sorted
-[[nodiscard]] std::vector<geometry::FacePair> crossingsAfterMotion(
-    const TriangleMesh& mesh, const std::vector<bool>& moved,
-    std::span<const geometry::FacePair> before);
-
 }  // namespace explica::unfolding

@@ -39,6 +39,17 @@ struct VisibleFraction {
                                               const Viewpoints& viewpoints,
                                               const VisibleFractionOptions& options = {});
 
+/// What is seen once some vertices have moved, by default rays: looks again where the ways from
+/// faces to a viewpoint pass by those that moved.  Positions count from the middle of where they
+/// stood, so that nothing else changes.
+/// @param stood   V x 3, before
+/// @param before  what was seen then
+/// @throws InvalidInput  as visibleFraction
+[[nodiscard]] VisibleFraction visibleFractionAfter(const TriangleMesh& mesh,
+                                                   const Viewpoints& viewpoints,
+                                                   const Positions& stood,
+                                                   const VisibleFraction& before);
+
 /// Share of the area of the listed faces that is seen: visibleFraction(...).of(mesh, faces),
 /// without looking at the rest of the surface where it stands nowhere in the way.  For few faces of
 /// many.
@@ -48,8 +59,8 @@ struct VisibleFraction {
 
 /// How much of each asked face stands over listed ones: the share of three rays from it against
 /// `axis` (unit), from points of its middle, that meet a listed face.
-/// @throws InvalidInput  no listed face, or a non-finite position
-[[nodiscard]] std::vector<float> standingOver(const TriangleMesh& mesh,
+/// @throws InvalidInput  no listed face, a non-finite axis, or such a position of a listed face
+[[nodiscard]] std::vector<float> standingOver(const Positions& positions, const Faces& faces,
                                               std::span<const std::int32_t> listed,
                                               std::span<const std::int32_t> asked,
                                               const Vector& axis);
