@@ -3,6 +3,7 @@
 
 #include "Outputs.h"
 
+#include "Explica/Core/Parallel.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -17,6 +18,7 @@
 #include "Explica/Visibility/FluxVariance.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace explica::app {
 namespace {
@@ -68,32 +70,23 @@ io::LabelMap regionLabel(const Unfolded& u) {
   return label;
 }
 
-/// Surfaces and maps.
+/// Surfaces and maps, some of them at the same time.
 void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
   const TriangleMesh& after = u.result.mesh;
   const auto& faces = u.result.region.faces;
   const std::string structure = u.metadata.structure;
-  io::writeGiftiSurface(context.output("unfolded.surf.gii"), after, u.metadata);
-  if (u.reference == kReferenceFile) {
-    io::writeGiftiSurface(context.output(kReferenceFile), u.before, u.metadata);
-  }
-
   const std::vector<io::VertexMap> visibilityMaps = {
       {"flux before", "", visibility::vertexFlux(u.before, u.view)},
       {"flux after", "", visibility::vertexFlux(after, u.view)},
       {"seen before", "", u.seenBefore.vertex},
       {"seen after", "", m.seenAfter.vertex}};
-  io::writeGiftiShape(context.output("visibility.shape.gii"), visibilityMaps, structure);
   const Eigen::VectorXd movedRatio = m.areaRatio(m.moved);
   const Eigen::VectorXd angles = m.angleChange(faces);
   const std::vector<io::VertexMap> distortionMaps = {
       {"area ratio", "", unfolding::vertexMeans(m.reference, m.moved, movedRatio, 1)},
       {"angle change", "degrees", unfolding::vertexMeans(m.reference, faces, angles, 0)},
       {"edge strain", "", unfolding::vertexStrains(m.reference, after.positions, faces)}};
-  io::writeGiftiShape(context.output("distortion.shape.gii"), distortionMaps, structure);
-
   const io::LabelMap label = regionLabel(u);
-  io::writeGiftiLabel(context.output("region.label.gii"), label, structure);
 
   std::vector<io::VertexMap> allVertexMaps = visibilityMaps;
   allVertexMaps.insert(allVertexMaps.end(), distortionMaps.begin(), distortionMaps.end());
@@ -105,13 +98,34 @@ void writeFiles(Context& context, const Unfolded& u, const Measures& m) {
       faceSeenBefore[faces[n]] = u.seenBefore.face[u.chosen.faces[n]];
     }
   }
-  io::writeVtp(context.output("unfolded.vtp"), after, allVertexMaps,
-               {{"area ratio", "", m.areaRatio},
-                {"angle change", "degrees", m.angleChange},
-                {"seen before", "", faceSeenBefore},
-                {"seen after", "", m.seenAfter.face}});
-  writeTextFile(context.output("evolution.tsv"), unfolding::evolutionTable(u.result.history));
-  unfolding::writeCheckpoint(context.output(kUnfoldingState), u.result.checkpoint);
+  std::vector<std::function<void()>> files;
+  const auto write = [&](const char* name, auto writing) {
+    files.emplace_back([writing, path = context.output(name)] { writing(path); });
+  };
+  write("unfolded.surf.gii",
+        [&](const auto& path) { io::writeGiftiSurface(path, after, u.metadata); });
+  if (u.reference == kReferenceFile) {
+    write(kReferenceFile,
+          [&](const auto& path) { io::writeGiftiSurface(path, u.before, u.metadata); });
+  }
+  write("visibility.shape.gii",
+        [&](const auto& path) { io::writeGiftiShape(path, visibilityMaps, structure); });
+  write("distortion.shape.gii",
+        [&](const auto& path) { io::writeGiftiShape(path, distortionMaps, structure); });
+  write("region.label.gii", [&](const auto& path) { io::writeGiftiLabel(path, label, structure); });
+  write("unfolded.vtp", [&](const auto& path) {
+    io::writeVtp(path, after, allVertexMaps,
+                 {{"area ratio", "", m.areaRatio},
+                  {"angle change", "degrees", m.angleChange},
+                  {"seen before", "", faceSeenBefore},
+                  {"seen after", "", m.seenAfter.face}});
+  });
+  write("evolution.tsv", [&](const auto& path) {
+    writeTextFile(path, unfolding::evolutionTable(u.result.history));
+  });
+  write(kUnfoldingState,
+        [&](const auto& path) { unfolding::writeCheckpoint(path, u.result.checkpoint); });
+  parallelFor(files.size(), 1, [&](std::size_t n) { files[n](); });
 }
 
 /// @param before  pairs that cross at the start, among the faces that are written

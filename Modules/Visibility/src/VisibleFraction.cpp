@@ -184,15 +184,16 @@ bool mayStandIn(const TriangleMesh& mesh, Eigen::Index f, const Point& eye, bool
 TriangleMesh withWhatMayHide(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces,
                              const Viewpoints& viewpoints, const Eigen::AlignedBox3d& box,
                              bool between, double margin) {
-  std::vector<bool> listed(static_cast<std::size_t>(mesh.faceCount()), false);
-  for (const std::int32_t f : faces) listed[f] = true;
+  std::vector<char> others(static_cast<std::size_t>(mesh.faceCount()));
+  parallelFor(others.size(), kGrain, [&](std::size_t f) {
+    others[f] = std::ranges::any_of(viewpoints.points, [&](const Point& eye) {
+      return mayStandIn(mesh, static_cast<Eigen::Index>(f), eye, between, box, margin);
+    });
+  });
+  for (const std::int32_t f : faces) others[f] = 0;
   std::vector<std::int32_t> chosen = faces;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    if (!listed[f] && std::ranges::any_of(viewpoints.points, [&](const Point& eye) {
-          return mayStandIn(mesh, f, eye, between, box, margin);
-        })) {
-      chosen.push_back(static_cast<std::int32_t>(f));
-    }
+  for (std::size_t f = 0; f < others.size(); ++f) {
+    if (others[f] != 0) chosen.push_back(static_cast<std::int32_t>(f));
   }
   return partOf(mesh.positions, mesh.faces, chosen);
 }
