@@ -15,6 +15,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <utility>
 
 namespace explica::collision {
@@ -55,29 +56,6 @@ Edges edgesOf(const Faces& faces) {
   }
   edges.conservativeResize(count, 2);
   return edges;
-}
-
-enum class FeatureKind : std::uint8_t { Vertex, Edge, Face };
-
-BoundsPyramid pyramidOf(const CollisionScene& scene, FeatureKind kind,
-                        std::span<const std::int32_t> items, const Positions& start,
-                        const Positions& motion, const Point& origin) {
-  const auto ofVertex = [&](std::int32_t v) {
-    return MotionBounds::ofPoint(start.row(v).transpose() - origin, motion.row(v).transpose());
-  };
-  const auto ofRow = [&](const auto& row) {
-    MotionBounds bounds = ofVertex(row[0]);
-    for (Eigen::Index k = 1; k < row.size(); ++k) bounds.extend(ofVertex(row[k]));
-    return bounds;
-  };
-  std::vector<MotionBounds> bounds(items.size());
-  parallelFor(items.size(), [&](std::size_t n) {
-    const std::int32_t i = items[n];
-    bounds[n] = kind == FeatureKind::Vertex ? ofVertex(i)
-                : kind == FeatureKind::Edge ? ofRow(scene.edges().row(i))
-                                            : ofRow(scene.faces().row(i));
-  });
-  return BoundsPyramid(bounds);
 }
 
 /// Collects pairs, tests eight at a time and keeps those that come within reach.
@@ -193,32 +171,29 @@ CollisionScene::CollisionScene(const TriangleMesh& mesh, const std::vector<bool>
     throw InvalidInput("vertexMoves: " + std::to_string(vertexMoves.size()) + " flags for " +
                        std::to_string(mesh.vertexCount()) + " vertices");
   }
-  Surroundings fixed;
+  std::array<std::vector<std::int32_t>, 3> standing;
   std::vector<bool> used(vertexMoves.size(), false);
   for (Eigen::Index n = 0; n < faces_.size(); ++n) used[faces_.data()[n]] = true;
   Eigen::AlignedBox3d box;
   for (std::int32_t v = 0; v < static_cast<std::int32_t>(used.size()); ++v) {
     if (!used[v]) continue;
-    (vertexMoves[v] ? movingVertices_ : fixed.vertices.items).push_back(v);
+    (vertexMoves[v] ? movingVertices_ : standing[0]).push_back(v);
     if (vertexMoves[v]) box.extend(Point(mesh.positions.row(v).transpose()));
   }
   if (!box.isEmpty()) origin_ = box.center();
   for (std::int32_t e = 0; e < edges_.rows(); ++e) {
     const bool moves = vertexMoves[edges_(e, 0)] || vertexMoves[edges_(e, 1)];
-    (moves ? movingEdges_ : fixed.edges.items).push_back(e);
+    (moves ? movingEdges_ : standing[1]).push_back(e);
   }
   for (std::int32_t f = 0; f < faces_.rows(); ++f) {
     const bool moves =
         vertexMoves[faces_(f, 0)] || vertexMoves[faces_(f, 1)] || vertexMoves[faces_(f, 2)];
-    (moves ? movingFaces_ : fixed.faces.items).push_back(f);
+    (moves ? movingFaces_ : standing[2]).push_back(f);
   }
-  const Positions still = Positions::Zero(mesh.vertexCount(), 3);
-  const std::array<Features*, 3> features = {&fixed.vertices, &fixed.edges, &fixed.faces};
-  parallelFor(3, 1, [&](std::size_t n) {
-    features[n]->pyramid = pyramidOf(*this, static_cast<FeatureKind>(n), features[n]->items,
-                                     mesh.positions, still, origin_);
-  });
-  fixed_ = std::make_shared<const Surroundings>(std::move(fixed));
+  auto [vertices, edges, faces] =
+      featuresOf(std::move(standing), mesh.positions, Positions::Zero(mesh.vertexCount(), 3));
+  fixed_ =
+      std::make_shared<const Surroundings>(std::move(vertices), std::move(edges), std::move(faces));
 }
 
 std::array<std::int32_t, 4> CollisionScene::vertices(const Pair& pair) const {
@@ -239,11 +214,35 @@ FourPoints CollisionScene::points(const Pair& pair, const Positions& positions) 
 std::array<CollisionScene::Features, 3> CollisionScene::featuresOf(
     std::array<std::vector<std::int32_t>, 3> items, const Positions& start,
     const Positions& motion) const {
+  std::vector<char> asked(static_cast<std::size_t>(start.rows()), 0);
+  for (const std::int32_t v : items[0]) asked[v] = 1;
+  for (const std::int32_t e : items[1]) asked[edges_(e, 0)] = asked[edges_(e, 1)] = 1;
+  for (const std::int32_t f : items[2]) {
+    for (int k = 0; k < 3; ++k) asked[faces_(f, k)] = 1;
+  }
+  const auto at = std::make_unique_for_overwrite<MotionBounds[]>(asked.size());
+  parallelFor(asked.size(), [&](std::size_t n) {
+    if (asked[n] == 0) return;
+    const auto v = static_cast<Eigen::Index>(n);
+    at[n] = MotionBounds::ofPoint(start.row(v).transpose() - origin_, motion.row(v).transpose());
+  });
+  const auto pyramidOf = [&](const std::vector<std::int32_t>& list, const auto& rowOf) {
+    std::vector<MotionBounds> bounds(list.size());
+    parallelFor(list.size(), [&](std::size_t n) {
+      const auto row = rowOf(list[n]);
+      bounds[n] = at[row[0]];
+      for (Eigen::Index k = 1; k < row.size(); ++k) bounds[n].extend(at[row[k]]);
+    });
+    return BoundsPyramid(bounds);
+  };
   std::array<Features, 3> features;
-  for (std::size_t n = 0; n < 3; ++n) features[n].items = std::move(items[n]);
   parallelFor(3, 1, [&](std::size_t n) {
     features[n].pyramid =
-        pyramidOf(*this, static_cast<FeatureKind>(n), features[n].items, start, motion, origin_);
+        n == 0
+            ? pyramidOf(items[0], [](std::int32_t v) { return Eigen::Vector<std::int32_t, 1>(v); })
+        : n == 1 ? pyramidOf(items[1], [&](std::int32_t e) { return edges_.row(e); })
+                 : pyramidOf(items[2], [&](std::int32_t f) { return faces_.row(f); });
+    features[n].items = std::move(items[n]);
   });
   return features;
 }
