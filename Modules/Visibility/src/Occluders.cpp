@@ -5,23 +5,24 @@
 
 #include "Explica/Core/Errors.h"
 
+#include <algorithm>
 #include <array>
 #include <new>
 
 namespace explica::visibility {
 namespace {
 
-/// The ray's own face, which must not hide it.
-struct OwnFaceContext {
+struct PacketContext {
   RTCIntersectContext base;
-  std::uint32_t face;
+  const std::uint32_t* faces;  ///< of each ray its own, which must not hide it
 };
 
 void ignoreOwnFace(const RTCFilterFunctionNArguments* args) {
-  const auto* context = reinterpret_cast<const OwnFaceContext*>(args->context);
+  const auto* context = reinterpret_cast<const PacketContext*>(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
-    if (RTCHitN_primID(args->hit, args->N, i) == context->face) args->valid[i] = 0;
+    const unsigned int ray = RTCRayN_id(args->ray, args->N, i);
+    if (RTCHitN_primID(args->hit, args->N, i) == context->faces[ray]) args->valid[i] = 0;
   }
 }
 
@@ -60,30 +61,32 @@ Occluders::Occluders(const TriangleMesh& mesh, const Point& centre)
   rtcCommitScene(scene_.get());
 }
 
-std::uint32_t Occluders::clear(std::span<const Point> from, std::span<const Vector> by,
-                               std::span<const double> lengths, std::uint32_t face) const {
-  OwnFaceContext context;
+void Occluders::Packet::add(const Point& from, const Vector& by, double length,
+                            std::uint32_t face) {
+  rays.org_x[count] = static_cast<float>(from.x());
+  rays.org_y[count] = static_cast<float>(from.y());
+  rays.org_z[count] = static_cast<float>(from.z());
+  rays.dir_x[count] = static_cast<float>(by.x());
+  rays.dir_y[count] = static_cast<float>(by.y());
+  rays.dir_z[count] = static_cast<float>(by.z());
+  rays.tfar[count] = static_cast<float>(length);
+  rays.mask[count] = 0xffffffffU;
+  rays.id[count] = static_cast<std::uint32_t>(count);
+  faces[count++] = face;
+}
+
+std::uint32_t Occluders::clear(Packet& packet) const {
+  PacketContext context;
   rtcInitIntersectContext(&context.base);
   context.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   context.base.filter = ignoreOwnFace;
-  context.face = face;
-  RTCRay16 rays = {};
+  context.faces = packet.faces.data();
   alignas(64) std::array<int, kPacket> valid = {};
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    valid[n] = -1;
-    rays.org_x[n] = static_cast<float>(from[n].x());
-    rays.org_y[n] = static_cast<float>(from[n].y());
-    rays.org_z[n] = static_cast<float>(from[n].z());
-    rays.dir_x[n] = static_cast<float>(by[n].x());
-    rays.dir_y[n] = static_cast<float>(by[n].y());
-    rays.dir_z[n] = static_cast<float>(by[n].z());
-    rays.tfar[n] = static_cast<float>(lengths[n]);
-    rays.mask[n] = 0xffffffffU;
-  }
-  rtcOccluded16(valid.data(), scene_.get(), &context.base, &rays);
+  std::fill_n(valid.begin(), packet.count, -1);
+  rtcOccluded16(valid.data(), scene_.get(), &context.base, &packet.rays);
   std::uint32_t clear = 0;
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    if (!(rays.tfar[n] < 0)) clear |= 1U << n;
+  for (std::size_t n = 0; n < packet.count; ++n) {
+    if (!(packet.rays.tfar[n] < 0)) clear |= 1U << n;
   }
   return clear;
 }

@@ -6,10 +6,10 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 
 namespace explica::visibility {
 
@@ -24,11 +24,17 @@ class Occluders {
   /// Rays that are cast together.
   static constexpr std::size_t kPacket = 16;
 
-  /// Bit n is set if no face other than `face` meets segment n, of at most kPacket.
-  /// @param from  where they start, mm about centre
-  /// @param by    unit directions
-  [[nodiscard]] std::uint32_t clear(std::span<const Point> from, std::span<const Vector> by,
-                                    std::span<const double> lengths, std::uint32_t face) const;
+  struct Packet {
+    RTCRay16 rays = {};
+    std::array<std::uint32_t, kPacket> faces;
+    std::size_t count = 0;
+    /// @param from  where it starts, mm about centre
+    /// @param by    unit direction
+    /// @param face  that does not count
+    void add(const Point& from, const Vector& by, double length, std::uint32_t face);
+  };
+  /// Bit n is set if no face but its own meets ray n.  The rays are spent.
+  [[nodiscard]] std::uint32_t clear(Packet& packet) const;
 
  private:
   struct ReleaseDevice {

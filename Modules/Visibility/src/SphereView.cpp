@@ -28,28 +28,26 @@ class FaceLook {
   FaceLook(const Occluders& occluders, std::size_t face, const Point& from, double radius)
       : occluders_(occluders),
         face_(static_cast<std::uint32_t>(face)),
-        length_(from.norm() + kBeyond * radius) {
-    from_.fill(from);
-  }
+        from_(from),
+        length_(from.norm() + kBeyond * radius) {}
 
   void add(const Vector& unit, double distance, double flux) {
-    by_[count_] = unit;
-    lengths_[count_] = std::min(distance, length_);
-    fluxes_[count_] = flux;
+    by_[packet_.count] = unit;
+    fluxes_[packet_.count] = flux;
     possible += flux;
-    if (++count_ == Occluders::kPacket) cast();
+    packet_.add(from_, unit, std::min(distance, length_), face_);
+    if (packet_.count == Occluders::kPacket) cast();
   }
 
   void cast() {
-    if (count_ == 0) return;
-    const std::uint32_t clear = occluders_.clear({from_.data(), count_}, {by_.data(), count_},
-                                                 {lengths_.data(), count_}, face_);
-    for (std::size_t n = 0; n < count_; ++n) {
+    if (packet_.count == 0) return;
+    const std::uint32_t clear = occluders_.clear(packet_);
+    for (std::size_t n = 0; n < packet_.count; ++n) {
       if ((clear >> n & 1U) == 0) continue;
       arriving += fluxes_[n];
       direction += by_[n];
     }
-    count_ = 0;
+    packet_.count = 0;
   }
 
   double possible = 0, arriving = 0;
@@ -58,11 +56,11 @@ class FaceLook {
  private:
   const Occluders& occluders_;
   std::uint32_t face_;
+  Point from_;
   double length_;
-  std::size_t count_ = 0;
-  std::array<Point, Occluders::kPacket> from_;
+  Occluders::Packet packet_;
   std::array<Vector, Occluders::kPacket> by_;
-  std::array<double, Occluders::kPacket> lengths_ = {}, fluxes_ = {};
+  std::array<double, Occluders::kPacket> fluxes_ = {};
 };
 
 void requireUsable(const TriangleMesh& mesh, const Viewpoints& viewpoints) {

@@ -15,6 +15,7 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace explica::visibility {
 namespace {
@@ -75,45 +76,59 @@ class Rays {
     double seen = 0;
     double arriving = 0;
   };
-  [[nodiscard]] Share of(Eigen::Index face) const {
-    const auto& [middle, radius] = frame_;
-    const Point a = mesh_.corner(face, 0) - middle;
-    const Point b = mesh_.corner(face, 1) - middle;
-    const Point c = mesh_.corner(face, 2) - middle;
-    const Vector normal = (b - a).cross(c - a).stableNormalized();
-    Share share;
-    for (std::size_t p = 0; p < viewpoints_.points.size(); ++p) {
-      const Point target = viewpoints_.points[p] - middle;
-      if (!(normal.dot(target - a) > 0)) continue;  // turned away
+  /// Calls keep(face, share) for faces one after the other, whose rays are cast together.
+  template <class Keep>
+  void look(std::size_t begin, std::size_t end, const Keep& keep) const {
+    struct Look {  // of a face to a viewpoint
+      std::size_t face;
+      double weight;
       int clear = 0;
       double cosines = 0;
-      std::array<Point, Occluders::kPacket> from;
-      std::array<Vector, Occluders::kPacket> by;
-      std::array<double, Occluders::kPacket> lengths;
-      for (std::size_t first = 0; first < samples_.size(); first += Occluders::kPacket) {
-        const std::size_t count = std::min(Occluders::kPacket, samples_.size() - first);
-        for (std::size_t n = 0; n < count; ++n) {
-          const Vector& s = samples_[first + n];
-          from[n] = s[0] * a + s[1] * b + s[2] * c;
-          const Vector toTarget = target - from[n];
+    };
+    std::vector<Look> looks;
+    Occluders::Packet packet;
+    std::array<std::pair<std::size_t, double>, Occluders::kPacket> ofRay;  // its look, its cosine
+    const auto cast = [&] {
+      std::uint32_t free = occluders_.clear(packet);
+      for (; free != 0; free &= free - 1) {
+        const auto& [look, cosine] = ofRay[std::countr_zero(free)];
+        ++looks[look].clear;
+        looks[look].cosines += cosine;
+      }
+      packet.count = 0;
+    };
+    const auto& [middle, radius] = frame_;
+    for (std::size_t f = begin; f < end; ++f) {
+      const auto face = static_cast<Eigen::Index>(f);
+      const Point a = mesh_.corner(face, 0) - middle;
+      const Point b = mesh_.corner(face, 1) - middle;
+      const Point c = mesh_.corner(face, 2) - middle;
+      const Vector normal = (b - a).cross(c - a).stableNormalized();
+      for (std::size_t p = 0; p < viewpoints_.points.size(); ++p) {
+        const Point target = viewpoints_.points[p] - middle;
+        if (!(normal.dot(target - a) > 0)) continue;  // turned away
+        looks.push_back({f, viewpoints_.weights[p]});
+        for (const Vector& s : samples_) {
+          const Point from = s[0] * a + s[1] * b + s[2] * c;
+          const Vector toTarget = target - from;
           const double distance = toTarget.norm();
-          by[n] = toTarget / distance;
+          const Vector by = toTarget / distance;
+          ofRay[packet.count] = {looks.size() - 1, normal.dot(by)};
           // Nothing lies beyond the mesh's ball: a far viewpoint costs no precision.
-          lengths[n] = std::min(distance, from[n].norm() + 1.001 * radius);
-        }
-        const std::uint32_t free =
-            occluders_.clear({from.data(), count}, {by.data(), count}, {lengths.data(), count},
-                             static_cast<std::uint32_t>(face));
-        clear += std::popcount(free);
-        for (std::size_t n = 0; n < count; ++n) {
-          if (free >> n & 1U) cosines += normal.dot(by[n]);
+          packet.add(from, by, std::min(distance, from.norm() + 1.001 * radius),
+                     static_cast<std::uint32_t>(f));
+          if (packet.count == Occluders::kPacket) cast();
         }
       }
-      const auto rays = static_cast<double>(samples_.size());
-      share.seen += viewpoints_.weights[p] * clear / rays;
-      share.arriving += viewpoints_.weights[p] * cosines / rays;
     }
-    return share;
+    cast();
+    const auto rays = static_cast<double>(samples_.size());
+    std::vector<Share> shares(end - begin);
+    for (const Look& look : looks) {
+      shares[look.face - begin].seen += look.weight * look.clear / rays;
+      shares[look.face - begin].arriving += look.weight * look.cosines / rays;
+    }
+    for (std::size_t f = begin; f < end; ++f) keep(f, shares[f - begin]);
   }
 
  private:
@@ -250,11 +265,12 @@ VisibleFraction visibleFraction(const TriangleMesh& mesh, const Viewpoints& view
   VisibleFraction result;
   result.face.setZero(mesh.faceCount());
   result.arriving.setZero(mesh.faceCount());
-  parallelFor(static_cast<std::size_t>(mesh.faceCount()), kGrain, [&](std::size_t i) {
-    const auto f = static_cast<Eigen::Index>(i);
-    const Rays::Share share = rays.of(f);
-    result.face[f] = share.seen;
-    result.arriving[f] = share.arriving;
+  const auto count = static_cast<std::size_t>(mesh.faceCount());
+  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
+    rays.look(begin, end, [&](std::size_t f, const Rays::Share& share) {
+      result.face[static_cast<Eigen::Index>(f)] = share.seen;
+      result.arriving[static_cast<Eigen::Index>(f)] = share.arriving;
+    });
   });
   addUp(mesh, result);
   return result;
@@ -290,10 +306,11 @@ VisibleFraction visibleFractionAfter(const TriangleMesh& mesh, const Viewpoints&
   if (!changed.empty()) {
     const TriangleMesh part = withWhatMayHide(mesh, changed, viewpoints, moved, false, 2 * largest);
     const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision, frame);
-    parallelFor(changed.size(), kGrain, [&](std::size_t i) {
-      const Rays::Share share = rays.of(static_cast<Eigen::Index>(i));
-      result.face[changed[i]] = share.seen;
-      result.arriving[changed[i]] = share.arriving;
+    parallelForBlocks(changed.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+      rays.look(begin, end, [&](std::size_t i, const Rays::Share& share) {
+        result.face[changed[i]] = share.seen;
+        result.arriving[changed[i]] = share.arriving;
+      });
     });
   }
   addUp(mesh, result);
@@ -311,8 +328,11 @@ double seenShare(const TriangleMesh& mesh, const std::vector<std::int32_t>& face
   const Rays rays(part, viewpoints, VisibleFractionOptions{}.subdivision, frameOf(mesh.positions));
   const auto count = static_cast<Eigen::Index>(faces.size());
   Eigen::VectorXd seen(count);
-  parallelFor(faces.size(), kGrain,
-              [&](std::size_t i) { seen[i] = rays.of(static_cast<Eigen::Index>(i)).seen; });
+  parallelForBlocks(faces.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    rays.look(begin, end, [&](std::size_t i, const Rays::Share& share) {
+      seen[static_cast<Eigen::Index>(i)] = share.seen;
+    });
+  });
   const Eigen::VectorXd areas = areasOf(part).head(count);
   return areas.sum() > 0 ? seen.dot(areas) / areas.sum() : 0;
 }
@@ -326,23 +346,18 @@ std::vector<float> standingOver(const Positions& positions, const Faces& faces,
   const Occluders occluders(below, middle);
   std::vector<float> over(asked.size());
   constexpr std::size_t kAtOnce = Occluders::kPacket / 3;  // faces whose rays go together
-  std::array<Vector, 3 * kAtOnce> by;
-  by.fill(-axis);
-  std::array<double, 3 * kAtOnce> length;
-  length.fill(kInfinity);
-  parallelFor((over.size() + kAtOnce - 1) / kAtOnce, kGrain, [&](std::size_t packet) {
-    const std::size_t first = kAtOnce * packet, count = std::min(kAtOnce, over.size() - first);
-    std::array<Point, 3 * kAtOnce> from;
+  parallelFor((over.size() + kAtOnce - 1) / kAtOnce, kGrain, [&](std::size_t number) {
+    const std::size_t first = kAtOnce * number, count = std::min(kAtOnce, over.size() - first);
+    Occluders::Packet packet;
     for (std::size_t n = 0; n < 3 * count; ++n) {
       const std::int32_t face = asked[first + n / 3];
       const auto corner = [&](std::size_t k) -> Point {
         return positions.row(faces(face, static_cast<Eigen::Index>(k % 3))).transpose();
       };
-      from[n] = (4 * corner(n) + corner(n + 1) + corner(n + 2)) / 6 - middle;
+      const Point from = (4 * corner(n) + corner(n + 1) + corner(n + 2)) / 6 - middle;
+      packet.add(from, -axis, kInfinity, RTC_INVALID_GEOMETRY_ID);
     }
-    const std::uint32_t clear =
-        occluders.clear({from.data(), 3 * count}, {by.data(), 3 * count},
-                        {length.data(), 3 * count}, RTC_INVALID_GEOMETRY_ID);
+    const std::uint32_t clear = occluders.clear(packet);
     for (std::size_t n = 0; n < count; ++n) {
       over[first + n] = 1 - static_cast<float>(std::popcount(clear >> (3 * n) & 7U)) / 3;
     }
