@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace explica::geometry {
@@ -67,6 +68,20 @@ TEST(SelfIntersection, MarkedFacesSelectTheirPairs) {
     if (marked[pair[0]] || marked[pair[1]]) expected.push_back(pair);
   }
   EXPECT_EQ(findSelfIntersections(mesh, marked), expected);
+}
+
+TEST(SelfIntersection, OfWhatDidNotMoveThePairsStay) {
+  TriangleMesh mesh = makeTorus(40, 20, 1, 1.1);
+  const auto before = findSelfIntersections(mesh);
+  std::vector<bool> moved(static_cast<std::size_t>(mesh.faceCount()), false);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
+    for (int k = 0; k < 3; ++k) moved[f] = moved[f] || mesh.corner(f, k).x() > 1;
+  }
+  ASSERT_TRUE(std::ranges::find(moved, false) != moved.end());
+  mesh.positions.col(0) = mesh.positions.col(0).array().min(2 - mesh.positions.col(0).array());
+  const auto after = findSelfIntersections(mesh);
+  ASSERT_NE(after, before);
+  EXPECT_EQ(findSelfIntersections(mesh, moved, before), after);
 }
 
 TEST(SelfIntersection, FoldedEdgeAndDuplicateFaceAreFound) {
