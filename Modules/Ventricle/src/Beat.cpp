@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace explica::ventricle {
@@ -89,11 +90,12 @@ void compareWithDiastole(Beat& beat) {
 
 Phases phasesOf(const std::vector<Volume<Label>>& hearts) {
   Phases phases;
-  std::size_t greatest = 0, smallest = 0;
+  std::size_t greatest = 0, smallest = std::numeric_limits<std::size_t>::max();
   for (std::size_t f = 0; f < hearts.size(); ++f) {
     const std::size_t cavity = countOf(hearts[f], kCavity);
-    if (f == 0 || cavity > greatest) greatest = cavity, phases.diastole = f;
-    if (f == 0 || cavity < smallest) smallest = cavity, phases.systole = f;
+    if (cavity == 0) continue;  // a frame that nobody has labelled
+    if (cavity > greatest) greatest = cavity, phases.diastole = f;
+    if (cavity < smallest) smallest = cavity, phases.systole = f;
   }
   return phases;
 }
@@ -135,7 +137,7 @@ Beat measureBeat(std::vector<Volume<Label>> hearts, const std::vector<int>& numb
                        ", cannot be measured: " + beat.atDiastole().why);
   }
   compareWithDiastole(beat);
-  if (beat.frames.size() > 1) {
+  if (beat.systole != beat.diastole) {
     beat.ejectionFraction = -percentMore(beat.atSystole().cavity, beat.atDiastole().cavity);
   }
   return beat;

@@ -131,7 +131,7 @@ const Reference& referenceOf(Quantity quantity) {
 }
 
 double valueOf(const Beat& beat, Quantity quantity) {
-  const bool two = beat.frames.size() > 1;
+  const bool two = beat.systole != beat.diastole;
   switch (quantity) {
     case Quantity::MiddleThickness:
       return ringMean(beat.atDiastole(), kMiddle);

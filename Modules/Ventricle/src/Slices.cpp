@@ -65,6 +65,21 @@ std::vector<Slice> slicesOf(const Volume<Label>& heart) {
   return slices;
 }
 
+std::int64_t missingSlices(const Volume<Label>& heart) {
+  std::int64_t missing = 0, since = 0;
+  bool begun = false;
+  for (const Slice& slice : slicesOf(heart)) {
+    if (slice.cavity > 0 && slice.wall > 0) {
+      if (begun) missing += since;
+      begun = true;
+      since = 0;
+    } else {
+      ++since;
+    }
+  }
+  return missing;
+}
+
 double openShareOf(const Volume<Label>& heart) {
   const Grid& grid = heart.grid;
   const Vector area(grid.spacing[1] * grid.spacing[2], grid.spacing[2] * grid.spacing[0],

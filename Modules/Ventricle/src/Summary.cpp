@@ -88,7 +88,7 @@ void describe(Results& t, const HeartSummary& s) {
   }();
   const Beat& beat = s.beat ? *s.beat : none;
   const Frame &ed = beat.atDiastole(), &es = beat.atSystole();
-  const bool beats = beat.frames.size() > 1;
+  const bool beats = beat.systole != beat.diastole;
   t.text("labels", "Labels", "The convention that they follow.", s.labels);
   t.share("open_share_ed", "Open at the base",
           "Share of the cavity's surface at end-diastole that has no wall.", s.openShare);
@@ -96,6 +96,11 @@ void describe(Results& t, const HeartSummary& s) {
   t.count("frames_with_wall", "Frames with a wall", "",
           std::count_if(beat.frames.begin(), beat.frames.end(),
                         [](const Frame& f) { return f.segments.has_value(); }));
+  std::int64_t missing = 0;
+  for (const Frame& frame : beat.frames) missing += missingSlices(frame.heart);
+  t.count("slices_missing", "Slices without labels between others",
+          "Of all frames: without cavity or wall between slices that have both.", missing)
+      .atMost(0, Judgement::Look, "volumes and mass are too small then");
   t.count("frame_ed", "Frame at end-diastole", "", ed.number);
   t.count("frame_es", "Frame at end-systole", "",
           beats ? std::optional<std::int64_t>(es.number) : std::nullopt);

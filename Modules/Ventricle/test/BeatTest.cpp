@@ -324,6 +324,35 @@ TEST(Beat, AFrameWithoutWallCountsForVolumesOnly) {
   EXPECT_THROW((void)measureBeat({bare}, {0}), InvalidInput);
 }
 
+TEST(Beat, AFrameThatNobodyHasLabelledIsNoSystole) {
+  const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 2, .slice = 8});
+  const Volume<Label>&full = phantom.frames[0].labels, &small = phantom.frames[1].labels;
+  const Volume<Label> none(full.grid, kOutside);
+  const Beat beat = measureBeat({none, full, none, small}, {0, 1, 2, 3});
+  EXPECT_EQ(beat.diastole, 1U);
+  EXPECT_EQ(beat.systole, 3U);
+  EXPECT_NEAR(*beat.ejectionFraction, 50, 1);
+  EXPECT_FALSE(measureBeat({none, full}, {0, 1}).ejectionFraction);
+}
+
+TEST(Slices, CountsThoseWithoutLabelsBetweenOthers) {
+  const auto phantom = phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8});
+  const Volume<Label> whole = phantom.frames[0].labels;
+  EXPECT_EQ(missingSlices(whole), 0);
+  const int middle = whole.grid.size[2] / 2;
+  for (const Label lost : {kCavity, kWall}) {
+    Volume<Label> heart = whole;
+    for (int j = 0; j < heart.grid.size[1]; ++j) {
+      for (int i = 0; i < heart.grid.size[0]; ++i) {
+        for (const int k : {middle, middle + 1}) {
+          if (heart(i, j, k) == lost) heart(i, j, k) = kOutside;
+        }
+      }
+    }
+    EXPECT_EQ(missingSlices(heart), 2);
+  }
+}
+
 TEST(Beat, RefusesFramesOfDifferentGrids) {
   const auto a = phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8});
   const auto b = phantom::beatingVentricle({92, 1.4}, {.frames = 1, .slice = 8});

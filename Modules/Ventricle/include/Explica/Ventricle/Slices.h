@@ -50,6 +50,11 @@ inline constexpr double kValveShare = 0.3;
 /// @return one per plane of constant k
 [[nodiscard]] std::vector<Slice> slicesOf(const Volume<Label>& heart);
 
+/// How many slices between the first and the last one with cavity and wall lack one of both: their
+/// labels are missing.
+/// @param heart  with this module's labels
+[[nodiscard]] std::int64_t missingSlices(const Volume<Label>& heart);
+
 /// Share of the cavity's outer area, by voxel faces, that touches no wall: the base of a ventricle
 /// and its openings; beyond the image counts as open.  0 of a closed shell, which is no ventricle.
 /// @param heart  with this module's labels
