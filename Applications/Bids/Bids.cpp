@@ -218,6 +218,11 @@ void writePage(Context& context, const study::Participant& participant) {
 Termination doParticipants(Context& context, const BidsSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const auto participants = study::findParticipants(s.dataset, s.participants);
+  if (participants.size() > 1 && context.given("t2")) {
+    throw UsageError("--t2 is an image of one head, and there are " +
+                     std::to_string(participants.size()) +
+                     " participants and sessions; do one of them with --participant-label");
+  }
   if (!context.given("dry-run")) {
     study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
                                provenance::software().version);

@@ -96,6 +96,14 @@ TEST_F(Bids, UnchangedStepsAreKeptByContent) {
   EXPECT_EQ(readText(record), before);
 }
 
+TEST_F(Bids, AnImageOfOneHeadIsNotGivenToSeveral) {
+  const CommandResult run =
+      explica({"bids", folder_ / "data", folder_ / "out", "participant", "--hemisphere", "L",
+               "--t2", folder_ / "data/sub-01/anat/sub-01_dseg.nii.gz", "--dry-run"});
+  EXPECT_EQ(run.exitCode, 1) << run;
+  EXPECT_NE(run.err.find("--participant-label"), std::string::npos) << run;
+}
+
 TEST_F(Bids, NoDataSetIsRefused) {
   fs::remove(folder_ / "data/dataset_description.json");
   const CommandResult run = participants();
