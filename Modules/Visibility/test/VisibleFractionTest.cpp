@@ -151,6 +151,20 @@ TEST(VisibleFraction, AfterAMotionIsWhatTheWholeSurfaceShows) {
   }
 }
 
+TEST(VisibleFraction, AfterAMotionTheShadowHasMoved) {
+  const TriangleMesh folded = geometry::makeFoldedSphere(4);
+  const TriangleMesh before =
+      geometry::joined(folded, geometry::makeIcosphere(2, 0.3, Point(3, 0, 0)));
+  TriangleMesh mesh = before;
+  mesh.positions.bottomRows(mesh.vertexCount() - folded.vertexCount()).col(1).array() += 0.4;
+  for (const Point& eye : {Point(6, 0, 0), Point(50, 3, 1), Point(3.5, 0.1, 0)}) {
+    const VisibleFraction then = visibleFraction(before, viewpoint(eye));
+    const VisibleFraction whole = visibleFraction(mesh, viewpoint(eye));
+    ASSERT_NE(whole.face.head(folded.faceCount()), then.face.head(folded.faceCount()));
+    EXPECT_EQ(visibleFractionAfter(mesh, viewpoint(eye), before.positions, then).face, whole.face);
+  }
+}
+
 TEST(VisibleFraction, DoesNotDependOnTheNumberOfThreads) {
   const TriangleMesh folded = geometry::makeFoldedSphere(4);
   setThreadCount(1);
