@@ -278,6 +278,7 @@ Outcome execute(Run& run, Console& console) {
     console.endStep(run.prefix);
     Outcome outcome = outcomeOf(Termination::Interrupted, state);
     outcome.abandoned = true;
+    outcome.plausible = true;  // nothing is left whose numbers could be doubted
     return outcome;
   } catch (const InvalidInput& error) {
     throw InvalidInput(withInputNames(error.what(), record, run.given));
