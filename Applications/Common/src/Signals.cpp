@@ -16,8 +16,9 @@
 namespace explica::app {
 namespace {
 
-volatile sig_atomic_t signalCount = 0;
-std::optional<long> stopAt;  ///< EXPLICA_STOP_AT_CHECK
+std::atomic<int> signalCount = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // a handler may change it
+std::optional<long> stopAt;                            ///< EXPLICA_STOP_AT_CHECK
 std::atomic<long> checks = 0;
 int endings[2] = {-1, -1};  ///< pipe by which the handler wakes the thread that ends the process
 
@@ -27,8 +28,7 @@ void endBySignal(int number) {
 }
 
 void onSignal(int number) {
-  signalCount = signalCount + 1;
-  if (signalCount == 1) return;
+  if (++signalCount == 1) return;
   const auto byte = static_cast<unsigned char>(number);
   if (endings[1] < 0 || write(endings[1], &byte, 1) != 1) endBySignal(number);
 }
@@ -49,7 +49,7 @@ bool signalled() {
 }
 
 bool endWanted() {
-  if (stopAt && ++checks == *stopAt) signalCount = signalCount + 1;
+  if (stopAt && ++checks == *stopAt) ++signalCount;
   return signalled();
 }
 
