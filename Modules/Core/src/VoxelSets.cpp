@@ -143,7 +143,7 @@ struct VoxelRuns {
 }  // namespace
 
 Components componentsOf(const VoxelSet& set) {
-  const auto [length, rows, slices] = set.grid.size;
+  const std::int64_t length = set.grid.size[0], rows = set.grid.size[1];
   const VoxelRuns lines(set);
   DisjointSets sets(lines.runs.size());
   for (std::size_t line = 0; line + 1 < lines.first.size(); ++line) {
