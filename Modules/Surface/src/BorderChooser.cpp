@@ -69,8 +69,10 @@ Eigen::VectorXd BorderChooser::deviations(const Eigen::VectorXd& chosen,
   return result;
 }
 
-std::int64_t BorderChooser::missing() const {
-  return std::count(has_.begin(), has_.end(), std::uint8_t{0});
+Eigen::VectorXd BorderChooser::missing() const {
+  const Eigen::Map<const Eigen::VectorX<std::uint8_t>> has(has_.data(),
+                                                           static_cast<Eigen::Index>(has_.size()));
+  return 1 - has.cast<double>().array();
 }
 
 bool BorderChooser::comesNear(std::size_t v) const {

@@ -49,8 +49,8 @@ class BorderChooser {
   [[nodiscard]] Eigen::VectorXd deviations(const Eigen::VectorXd& chosen,
                                            const Eigen::VectorXd& noise, double most) const;
 
-  /// Vertices where brightness comes nowhere near the level.
-  [[nodiscard]] std::int64_t missing() const;
+  /// Per vertex, 1 where brightness comes nowhere near the level, else 0.
+  [[nodiscard]] Eigen::VectorXd missing() const;
 
  private:
   [[nodiscard]] bool comesNear(std::size_t v) const;

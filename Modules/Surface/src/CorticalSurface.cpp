@@ -18,14 +18,12 @@
 #include "Explica/Surface/GivenSurfaces.h"
 #include "Explica/Surface/Measures.h"
 #include "Explica/Surface/Remesh.h"
+#include "GrowingColumns.h"
 #include "Growth.h"
-#include "GuardedMesh.h"
-#include "ImageBorder.h"
 #include "KeepRoom.h"
-#include "LevelOfEnds.h"
 #include "MendTogether.h"
 #include "OntoLevel.h"
-#include "PathProfile.h"
+#include "PlaceByImage.h"
 #include "Relaxation.h"
 #include "RibbonPaths.h"
 
@@ -58,8 +56,6 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// The image makes no face of the white surface less high than this, edges.
-constexpr double kLeastHeight = 0.1;
 /// Longest edge that is left, in mean ones: 4 mm where these are 1.29 mm.
 constexpr double kLongestEdge = 3.1;
 /// Farthest that smoothing may take a vertex across its surface in one sweep, voxels.
@@ -108,12 +104,6 @@ void requirePrecision(const Grid& grid) {
                      std::to_string(voxel) + " mm); move its origin nearer");
 }
 
-/// Columns of tissue upon the white surface.
-struct GrowingColumns {
-  CorticalTissue tissue;  ///< corrected
-  std::vector<Trajectory> paths;
-};
-
 /// The tissue between white matter, as its topology was corrected, and what lies outside.  Its
 /// boundaries are those of the labels, or where shares are one half.
 harmonic::Annulus annulusOf(const CorticalTissue& tissue, const Monitor& monitor) {
@@ -156,140 +146,9 @@ struct RibbonVoxels {
   correspondence::Correspondence found;
 };
 
-/// Where a path no longer leaves white matter behind: from there surfaces that grew along it would
-/// crowd on the floor of a sulcus, or pass into the other bank's columns.
-/// @param face   of the white surface near the path's start
-/// @param first  least arc length, mm
-/// @return arc length; the path's own if it leaves white matter behind everywhere
-double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel, double first,
-               const Trajectory& path) {
-  // Along the middle between fronts that meet at 120 degrees, distance grows at half the rate of
-  // the way.
-  constexpr double kRate = 0.5;
-  constexpr double kWindow = 0.5;  // voxels
-  const auto distanceAt = [&](double arc) {
-    const auto nearest = white.closestPoint(path.at(arc), face);
-    face = nearest.face;
-    return std::sqrt(nearest.squaredDistance);
-  };
-  const double window = kWindow * voxel, length = path.length();
-  const double last = distanceAt(length), gained = last - distanceAt(0);
-  if (length - gained < 0.5 * (1 - kRate) * window) return length;  // what it need not look at
-  double here = distanceAt(first), next = distanceAt(std::min(first + 0.5 * window, length));
-  for (double from = first; from < length; from += 0.5 * window) {
-    const double to = std::min(from + window, length);
-    const double there = to < length ? distanceAt(to) : last;
-    if (to - from >= 0.5 * window && there - here < kRate * (to - from)) return from;
-    here = next;
-    next = there;
-  }
-  return length;
-}
-
-/// Trajectories from the white vertices that have tissue upon them.
-void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColumns& columns) {
-  const LevelSet& tissue = columns.tissue.tissue;
-  constexpr double kOff = 0.125;  // voxels: so far outward tissue begins, or there is none
-  const double voxel = voxelSize(tissue.grid), off = kOff * voxel;
-  const Positions normals = geometry::vertexNormals(white);
-  const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
-  const geometry::FaceTree tree(white);
-  std::vector<Trajectory>& paths = columns.paths;
-  paths.resize(white.vertexCount());
-  parallelFor(paths.size(), 256, [&](std::size_t v) {
-    const auto row = static_cast<Eigen::Index>(v);
-    const Point start = white.positions.row(row);
-    const Vector normal = normals.row(row);
-    Trajectory& path = paths[v];
-    path = sample(tissue, start + off * normal).value > 0 ? ribbon.outwardFrom(start, normal)
-                                                          : ribbon.none(start);
-    if (path.end == TrajectoryEnd::NoRibbon) return;
-    // Beside a bank's sheet there may be fluid, too.
-    if (sample(tissue, along(path, path.length() + 4 * off)).value <= 0) {
-      path.end = TrajectoryEnd::Outer;
-    }
-    const double stall = stallOf(tree, faceAt[v], voxel, 0.25 * voxel, path);
-    if (stall < path.length()) {
-      cut(path, stall);
-      path.end = TrajectoryEnd::Bank;
-    }
-  });
-  keepFromMiddles(middleGap(tissue.grid), paths);
-}
-
-/// The tissue with its white matter's topology corrected.
-CorticalTissue corrected(CorticalTissue tissue, const LevelSet& white) {
-  tissue.white = white;
-  for (std::size_t v = 0; v < white.size(); ++v) {
-    tissue.tissue[v] = std::max(tissue.tissue[v], white[v]);
-  }
-  return tissue;
-}
-
 /// What the surfaces keep clear of themselves.
 Room roomOf(const WhiteSurface& white) {
   return roomFor(voxelSize(white.level.grid), white.edgeLength);
-}
-
-/// Height of a triangle over its longest edge.
-double heightOf(const Point& a, const Point& b, const Point& c) {
-  const double longest = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
-  return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
-}
-
-/// True if a move would make a face lower than `least` mm, and lower than it is.
-bool flattens(const GuardedMesh& mesh, std::int32_t v, const Point& to, double least) {
-  const auto& ring = mesh.facesOf(v);
-  return std::any_of(ring.begin(), ring.end(), [&](std::int32_t f) {
-    const auto& c = mesh.face(f);
-    std::array<Point, 3> now = {mesh.at(c[0]), mesh.at(c[1]), mesh.at(c[2])}, then = now;
-    then[std::find(c.begin(), c.end(), v) - c.begin()] = to;
-    const double height = heightOf(then[0], then[1], then[2]);
-    return height < least && height < heightOf(now[0], now[1], now[2]);
-  });
-}
-
-/// Moves the white surface and the tissue's outer border to where an image changes most steeply.
-void placeByImage(const BorderImages& images, double fluid, GrowingColumns& ribbon,
-                  CorticalSurfaces& result) {
-  const double voxel = voxelSize(ribbon.tissue.white.grid);
-  TriangleMesh& white = result.white.mesh;
-  ImageBorderOptions options;
-  options.fluid = fluid;
-  options.search = ribbon.tissue.byBrightness;
-  const LevelSet inner = distanceLevelOf(ribbon.tissue.white);
-  const ImageBorders borders = findBorders(ribbon.paths, white, inner, images, voxel, options);
-  result.image.missingWhite = borders.missingWhite;
-  result.image.missingOuter = borders.missingOuter;
-  result.image.voxel = voxel;
-  result.image.doubt = borders.doubt;
-
-  GuardedMesh mesh(white, result.white.edgeLength);
-  Eigen::VectorXd moved = Eigen::VectorXd::Zero(white.vertexCount());
-  const double least = kLeastHeight * result.white.edgeLength;
-  // In steps, so that neighbours make way for each other.
-  for (const double share : {0.25, 0.5, 0.75, 1.0, 1.0}) {
-    mesh.sweep([&](std::int32_t v, GuardedMesh::Scratch& scratch) {
-      const double wanted = share * borders.white[v];
-      if (moved[v] == wanted) return true;
-      const Point to = between(ribbon.paths[v], wanted, wanted + voxel).points[0];
-      if (flattens(mesh, v, to, least) || !mesh.move(v, to, scratch)) return false;
-      moved[v] = wanted;
-      return true;
-    });
-  }
-  RelaxationOptions mending;
-  mending.sweeps = 0;
-  white = relaxed(mesh.toMesh(), result.white.edgeLength, {}, stayThere, mending);
-  keepRoom(white, roomOf(result.white));
-  CorticalTissue& tissue = ribbon.tissue;
-  tissue.tissue =
-      levelOfEnds(distanceLevelOf(tissue.tissue), ribbon.paths, PathBorder::Outer, borders.outer);
-  const LevelSet moving = levelOfEnds(inner, ribbon.paths, PathBorder::Inner, moved);
-  tissue = corrected(std::move(tissue), moving);
-  tissue.ofLabels = false;  // the levels say more than the labels
-  result.image.movedWhite = moved.cwiseAbs().mean();
-  result.image.movedOuter = borders.outer.cwiseAbs().mean();
 }
 
 /// That of the ribbon's voxels around the middle vertices.
@@ -471,20 +330,18 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   Stopwatch watch;
   GrowingColumns ribbon;
   ribbon.tissue = corrected(tissue, result.white.level);
-  // A mesh whose edges are longer cuts off what the grid shows.
-  constexpr double kFineEdge = 1.5;  // voxels
-  const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  const bool byMesh = images && isFine;
+  std::optional<TriangleMesh> placed;
   if (images) {
+    std::optional<WhiteSurface> other = withEdgesOfVoxels(result.white);
     const correspondence::Ribbon ofLabels =
         solve(annulusOf(ribbon.tissue, silent(monitor)), monitor.part(0.5, 0.6));
-    takePaths(result.white.mesh, RibbonPaths(ofLabels), ribbon);
-    placeByImage(*images, options.fluid, ribbon, result);
+    placed = placeByImage(*images, options.fluid, RibbonPaths(ofLabels), std::move(other), ribbon,
+                          result);
     images.reset();
     result.seconds.image = watch.lap();
   }
   const correspondence::Ribbon first =
-      solve(byMesh ? annulusBetween(result.white.mesh, ribbon.tissue, silent(monitor))
+      solve(placed ? annulusBetween(*placed, ribbon.tissue, silent(monitor))
                    : annulusOf(ribbon.tissue, silent(monitor)),
             monitor.part(0.6, 0.7));
   result.cutLinks = static_cast<std::int64_t>(first.sulcalVoxels.size());
@@ -497,7 +354,7 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
   // better than a mesh.
   std::optional<correspondence::Ribbon> between;
-  if (byMesh && hasLongVoxels(ribbon.tissue.insulated.grid)) {
+  if (placed && followsGrid(result.white) && hasLongVoxels(ribbon.tissue.insulated.grid)) {
     between = solve(
         annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
         silent(monitor));

@@ -348,7 +348,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   const double edge = meanEdge(white);
   ImageBorders borders;
   borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
-  borders.doubt = Eigen::MatrixXd::Zero(white.vertexCount(), 2);
+  borders.doubt = borders.missing = Eigen::MatrixXd::Zero(white.vertexCount(), 2);
   std::vector<Trajectory> paths = given;
   if (options.search) {
     borders.white = searchWhite(given, topology, edge, masked, voxel);
@@ -384,7 +384,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
     borders.doubt.col(outer ? 1 : 0) = doubtOf(
         paths, outer, voxel, ways, chooser.deviations(ways, sight.noise, voxel), sight.covered);
     (outer ? borders.outer : borders.white) += ways;
-    (outer ? borders.missingOuter : borders.missingWhite) = chooser.missing();
+    borders.missing.col(outer ? 1 : 0) = chooser.missing();
   }
   return borders;
 }

@@ -38,11 +38,11 @@ struct ImageBorderOptions {
 
 /// Where the image puts the borders, beside where the labels do.
 struct ImageBorders {
-  Eigen::VectorXd white;          ///< per vertex, mm outward along the trajectory
-  Eigen::VectorXd outer;          ///< per vertex, mm outward along the trajectory
-  Eigen::MatrixXd doubt;          ///< V x 2: standard deviation of their places, mm
-  std::int64_t missingWhite = 0;  ///< vertices that show no such edge, or off the image: they stay
-  std::int64_t missingOuter = 0;  ///< at the labels' border
+  Eigen::VectorXd white;    ///< per vertex, mm outward along the trajectory
+  Eigen::VectorXd outer;    ///< per vertex, mm outward along the trajectory
+  Eigen::MatrixXd doubt;    ///< V x 2: standard deviation of their places, mm
+  Eigen::MatrixXd missing;  ///< V x 2: 1 where the image shows no such edge, or off the image: the
+                            ///< labels' border stays; else 0
 };
 
 /// Places on the trajectories where the image crosses from one tissue to the next.

@@ -239,8 +239,6 @@ double edgeFor(double area, std::int64_t faces) {
   return std::sqrt(4 / std::sqrt(3.0) * area / static_cast<double>(faces));
 }
 
-constexpr std::int64_t kFewestFaces = 100;  // below them no shape is kept
-
 /// What was asked for, to the next even number, but no more than the volume can tell.
 std::int64_t facesWanted(const RemeshOptions& options, double area, double voxel,
                          const Monitor& monitor) {

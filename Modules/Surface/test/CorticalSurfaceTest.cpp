@@ -361,6 +361,42 @@ TEST(CorticalSurface, MeanThicknessIsFreeOfSampling) {
   EXPECT_NEAR(meanOf(finer(labels, 3, 2), 12000), mean, 0.02);
 }
 
+/// Brightness at signed distances to white matter's and the tissue's border, mm, positive inside,
+/// seen through a point spread.
+float brightnessAt(double white, double tissue) {
+  const auto step = [](double x) { return 0.5 * (1 + std::erf(x / (0.6 * std::sqrt(2.0)))); };
+  return static_cast<float>(20 + 60 * step(tissue) + 30 * step(white));
+}
+
+TEST(CorticalSurface, MeanThicknessByAnImageIsFreeOfTheFaces) {
+  TissueOptions options;
+  options.white = {3};
+  options.grey = {2};
+  const CorticalTissue tissue = tissueFromLabels(groovedLabels(19 * kPi / 180), options);
+  // White matter ends 0.4 mm farther in than the labels say, on one side.
+  const LevelSet white = distanceLevelOf(tissue.white), outer = distanceLevelOf(tissue.tissue);
+  const double band = bandOf(white.grid);
+  Volume<float> image(white.grid);
+  for (std::size_t v = 0; v < image.size(); ++v) {
+    const auto at = white.grid.subscripts(v);
+    const double in = white.grid.toWorld(Vector(at[0], at[1], at[2])).x() > 0 ? 0.4 : 0;
+    image[v] = brightnessAt(band * white[v] - in, band * outer[v]);
+  }
+  const auto meanOf = [&](int faces) {
+    SurfaceOptions many;
+    many.faces = faces;
+    const auto made = buildSurfaces(tissue, image, many);
+    EXPECT_GT(made.image.movedWhite, 0.05);
+    EXPECT_EQ(made.image.doubt.rows(), made.thickness.size());
+    EXPECT_LE(made.image.missingWhite, made.thickness.size());
+    const double mean = meanThickness(made.columns.area, made.columns.thickness);
+    std::printf("%d faces: mean thickness %.4f mm\n", faces, mean);
+    return mean;
+  };
+  const double mean = meanOf(12000);
+  for (const int faces : {3000, 40000}) EXPECT_NEAR(meanOf(faces), mean, 0.01) << faces;
+}
+
 /// Brightness of a shell seen through a point spread: white, grey, dark, and a bright vessel
 /// beyond.
 float brightness(const Point& p, double inner, double outer) {
