@@ -214,15 +214,23 @@ void writePage(Context& context, const study::Participant& participant) {
   writeTextFile(context.output(subject + ".html"), study::indexPage(rows, subject));
 }
 
+/// Images and masks that options name are one head's; an atlas may be everybody's.
+void refuseVolumesOfOneHead(const Context& context, const BidsSettings& s, std::size_t heads) {
+  for (const Parameter& parameter : s.run.declaration.parameters) {
+    const std::string& name = parameter.option.name;
+    const bool isOfHead = parameter.file == FileKind::Volume || name.ends_with("mask");
+    if (!isOfHead || !context.given(name)) continue;
+    throw UsageError("--" + name + " is a volume of one head, and there are " +
+                     std::to_string(heads) +
+                     " participants and sessions; do one of them with --participant-label");
+  }
+}
+
 /// All that can be done is done; exit code 3 if some failed, 2 if all did.
 Termination doParticipants(Context& context, const BidsSettings& s) {
   const StopScope kept(nullptr);  // what is reached is written
   const auto participants = study::findParticipants(s.dataset, s.participants);
-  if (participants.size() > 1 && context.given("t2")) {
-    throw UsageError("--t2 is an image of one head, and there are " +
-                     std::to_string(participants.size()) +
-                     " participants and sessions; do one of them with --participant-label");
-  }
+  if (participants.size() > 1) refuseVolumesOfOneHead(context, s, participants.size());
   if (!context.given("dry-run")) {
     study::describeDerivatives(context.outputFolder(), {s.dataset, !context.isPrivate()},
                                provenance::software().version);

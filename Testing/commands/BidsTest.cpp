@@ -97,11 +97,14 @@ TEST_F(Bids, UnchangedStepsAreKeptByContent) {
 }
 
 TEST_F(Bids, AnImageOfOneHeadIsNotGivenToSeveral) {
-  const CommandResult run =
-      explica({"bids", folder_ / "data", folder_ / "out", "participant", "--hemisphere", "L",
-               "--t2", folder_ / "data/sub-01/anat/sub-01_dseg.nii.gz", "--dry-run"});
-  EXPECT_EQ(run.exitCode, 1) << run;
-  EXPECT_NE(run.err.find("--participant-label"), std::string::npos) << run;
+  for (const char* option : {"--t2", "--segment.mask", "--surface.image"}) {
+    const CommandResult run =
+        explica({"bids", folder_ / "data", folder_ / "out", "participant", "--hemisphere", "L",
+                 option, folder_ / "data/sub-01/anat/sub-01_dseg.nii.gz", "--dry-run"});
+    EXPECT_EQ(run.exitCode, 1) << run;
+    EXPECT_NE(run.err.find(option), std::string::npos) << run;
+    EXPECT_NE(run.err.find("--participant-label"), std::string::npos) << run;
+  }
 }
 
 TEST_F(Bids, NoDataSetIsRefused) {

@@ -5,6 +5,7 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
@@ -16,9 +17,13 @@ namespace {
 
 using harmonic::Annulus;
 
-/// A voxel's centre, mm along the grid's axes.
-Vector placeOf(const Annulus& annulus, std::int32_t n) {
-  return annulus.index(n).cwiseProduct(annulus.grid.spacing);
+/// The voxels' centres, mm along the grid's axes.
+std::vector<Vector> placesOf(const Annulus& annulus) {
+  std::vector<Vector> places(annulus.count());
+  parallelFor(places.size(), 1 << 14, [&](std::size_t n) {
+    places[n] = annulus.index(static_cast<std::int32_t>(n)).cwiseProduct(annulus.grid.spacing);
+  });
+  return places;
 }
 
 bool onEdge(const Annulus& annulus, std::int32_t n, const std::array<bool, 3>& axes) {
@@ -33,7 +38,8 @@ bool onEdge(const Annulus& annulus, std::int32_t n, const std::array<bool, 3>& a
 /// For each tissue voxel the nearest one that `isSource` holds for, carried from voxel to voxel
 /// through the tissue; -1: none.
 template <class IsSource>
-std::vector<std::int32_t> nearestOf(const Annulus& annulus, const IsSource& isSource) {
+std::vector<std::int32_t> nearestOf(const Annulus& annulus, const std::vector<Vector>& places,
+                                    const IsSource& isSource) {
   const auto count = static_cast<std::int32_t>(annulus.count());
   const auto strides = annulus.strides();
   std::vector<std::int32_t> nearest(annulus.count(), -1);
@@ -48,13 +54,13 @@ std::vector<std::int32_t> nearestOf(const Annulus& annulus, const IsSource& isSo
   while (!waiting.empty()) {
     const std::int32_t n = waiting.front();
     waiting.pop_front();
-    const Vector source = placeOf(annulus, nearest[n]);
+    const Vector& source = places[nearest[n]];
     for (int d = 0; d < 6; ++d) {
       const std::int32_t place =
           annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
       const std::int32_t m = annulus.numberAt[place];
       if (m < 0) continue;
-      const double offered = (placeOf(annulus, m) - source).norm();
+      const double offered = (places[m] - source).norm();
       if (!(offered < distance[m])) continue;
       distance[m] = offered;
       nearest[m] = nearest[n];
@@ -65,22 +71,24 @@ std::vector<std::int32_t> nearestOf(const Annulus& annulus, const IsSource& isSo
 }
 
 /// Marks voxels without thickness that are nearer to the edge than to one of the two boundaries.
-void markLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdgeNearest,
+void markLeaving(const Annulus& annulus, const std::vector<Vector>& places,
+                 const std::vector<std::int32_t>& onEdgeNearest,
                  const Correspondence& correspondence, std::vector<std::uint8_t>& marked) {
-  const auto beside = [&](std::int32_t wall) {
-    return nearestOf(annulus, [&annulus, wall](std::int32_t n) {
+  std::array<std::vector<std::int32_t>, 2> beside;
+  parallelFor(2, 1, [&](std::size_t side) {
+    const std::int32_t wall = side == 0 ? harmonic::kInner : harmonic::kOuter;
+    beside[side] = nearestOf(annulus, places, [&annulus, wall](std::int32_t n) {
       const auto& links = annulus.links[n];
       return std::find(links.begin(), links.end(), wall) != links.end();
     });
-  };
-  const std::vector<std::int32_t> inner = beside(harmonic::kInner),
-                                  outer = beside(harmonic::kOuter);
+  });
   const auto wayTo = [&](std::int32_t n, std::int32_t m) {
-    return m < 0 ? kInfinity : (placeOf(annulus, n) - placeOf(annulus, m)).norm();
+    return m < 0 ? kInfinity : (places[n] - places[m]).norm();
   };
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
     if (!std::isnan(correspondence.thickness(n)) || onEdgeNearest[n] < 0) continue;
-    marked[n] = wayTo(n, onEdgeNearest[n]) < std::max(wayTo(n, inner[n]), wayTo(n, outer[n]));
+    marked[n] =
+        wayTo(n, onEdgeNearest[n]) < std::max(wayTo(n, beside[0][n]), wayTo(n, beside[1][n]));
   }
 }
 
@@ -88,17 +96,18 @@ void markLeaving(const Annulus& annulus, const std::vector<std::int32_t>& onEdge
 
 std::vector<std::uint8_t> nearImageEdge(const Annulus& annulus, const std::array<bool, 3>& axes,
                                         const Correspondence& correspondence) {
+  const std::vector<Vector> places = placesOf(annulus);
   const std::vector<std::int32_t> nearest =
-      nearestOf(annulus, [&](std::int32_t n) { return onEdge(annulus, n, axes); });
+      nearestOf(annulus, places, [&](std::int32_t n) { return onEdge(annulus, n, axes); });
   if (std::all_of(nearest.begin(), nearest.end(), [](std::int32_t n) { return n < 0; })) return {};
   std::vector<std::uint8_t> marked(annulus.count(), 0);
-  if (correspondence.missing > 0) markLeaving(annulus, nearest, correspondence, marked);
+  if (correspondence.missing > 0) markLeaving(annulus, places, nearest, correspondence, marked);
   const Eigen::Matrix3d toAxes = annulus.grid.direction.transpose();
   parallelFor(annulus.count(), 1 << 12, [&](std::size_t index) {
     const auto n = static_cast<std::int32_t>(index);
     const double thickness = correspondence.thickness(n);
     if (nearest[n] < 0 || std::isnan(thickness)) return;
-    const Vector way = placeOf(annulus, n) - placeOf(annulus, nearest[n]);
+    const Vector way = places[n] - places[nearest[n]];
     const auto from = [&](const Eigen::Vector3f& point) {
       return (way + toAxes * point.cast<double>()).norm();
     };

@@ -354,7 +354,9 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
   // better than a mesh.
   std::optional<correspondence::Ribbon> between;
-  if (placed && followsGrid(result.white) && hasLongVoxels(ribbon.tissue.insulated.grid)) {
+  constexpr double kFineEdge = 1.5;  // voxels
+  const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
+  if (placed && isFine && hasLongVoxels(ribbon.tissue.insulated.grid)) {
     between = solve(
         annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
         silent(monitor));

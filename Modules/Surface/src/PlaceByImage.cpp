@@ -10,6 +10,7 @@
 #include "ImageBorder.h"
 #include "KeepRoom.h"
 #include "LevelOfEnds.h"
+#include "PathProfile.h"
 #include "Relaxation.h"
 
 #include <Eigen/Geometry>
@@ -24,12 +25,11 @@ namespace {
 
 /// The image makes no face of the white surface less high than this, edges.
 constexpr double kLeastHeight = 0.1;
-/// A mesh with longer edges, voxels, cuts off what the grid shows.
-constexpr double kLongEdge = 1.5;
-
-double edgeInVoxels(const WhiteSurface& white) {
-  return white.edgeLength / voxelSize(white.level.grid);
-}
+/// Mean edge of the mesh on which borders are looked for, voxels.  Shorter ones cost more, and move
+/// the mean thickness of a cortex by 0.01 mm for a tenth of a voxel.
+constexpr double kEdge = 1.2;
+/// By which share a mesh that serves may be coarser or finer.
+constexpr double kNear = 0.1;
 
 /// Height of a triangle over its longest edge.
 double heightOf(const Point& a, const Point& b, const Point& c) {
@@ -92,15 +92,11 @@ ImageBorders at(const Positions& points, const TriangleMesh& surface, const Imag
 
 }  // namespace
 
-bool followsGrid(const WhiteSurface& white) {
-  return edgeInVoxels(white) <= kLongEdge;
-}
-
 std::optional<WhiteSurface> withEdgesOfVoxels(const WhiteSurface& white) {
-  if (followsGrid(white) && edgeInVoxels(white) >= 1 / kLongEdge) return {};
-  const double voxel = voxelSize(white.level.grid);
+  const double voxel = voxelSize(white.level.grid), edge = kEdge * voxel;
+  if (std::abs(meanEdge(white.mesh) - edge) <= kNear * edge) return {};
   const TriangleMesh raw = geometry::extractIsoSurface(white.level);
-  const double equilateral = std::sqrt(3.0) / 4 * voxel * voxel;
+  const double equilateral = std::sqrt(3.0) / 4 * edge * edge;
   RemeshOptions remeshing;
   remeshing.faces =
       std::max(kFewestFaces, static_cast<std::int64_t>(geometry::totalArea(raw) / equilateral));

@@ -11,9 +11,6 @@
 
 namespace explica::surface {
 
-/// Whether edges are short enough to follow what the grid shows.
-[[nodiscard]] bool followsGrid(const WhiteSurface& white);
-
 /// The same white matter's surface with edges of a voxel, where the given one's are much longer or
 /// shorter.
 [[nodiscard]] std::optional<WhiteSurface> withEdgesOfVoxels(const WhiteSurface& white);
