@@ -142,29 +142,36 @@ std::vector<statistics::Contrast> contrastsOf(const GlmSettings& s,
   return contrasts;
 }
 
-/// The number of each person's word in a column.
-std::vector<int> levelsIn(const std::string& column, const Observations& o) {
+/// Each person's word in a column.
+statistics::Levels levelsIn(const std::string& column, const Observations& o) {
   std::vector<std::size_t> rows(o.people.size());
   std::iota(rows.begin(), rows.end(), 0);
-  return statistics::levelsOf(o.about, column, rows).of;
+  return statistics::levelsOf(o.about, column, rows);
 }
 
 std::vector<int> blocksOf(const GlmSettings& s, const Observations& o,
                           const statistics::Design& design) {
-  return s.blocks ? levelsIn(*s.blocks, o) : design.groups;
+  return s.blocks ? levelsIn(*s.blocks, o).of : design.groups;
 }
 
-/// ComBat keeps what the model's own columns explain.
+/// ComBat keeps what the model's own columns explain, which must not be the sites' differences.
 void harmonise(const GlmSettings& s, const Observations& o, const statistics::Design& design,
                Eigen::MatrixXd& values) {
   if (s.site != SiteModel::Combat) return;
-  Eigen::MatrixXd covariates(values.rows(), 0);
+  const statistics::Levels sites = levelsIn(s.siteColumn, o);
+  const auto first = static_cast<Eigen::Index>(sites.names.size());
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(values.rows(), first);
+  for (Eigen::Index i = 0; i < all.rows(); ++i) all(i, sites.of[static_cast<std::size_t>(i)]) = 1;
+  std::vector<std::string> names;
+  for (const std::string& site : sites.names) names.push_back(s.siteColumn + "[" + site + "]");
   for (std::size_t c = 0; c < design.columns.size(); ++c) {
     if (design.columns[c] == "intercept") continue;
-    covariates.conservativeResize(Eigen::NoChange, covariates.cols() + 1);
-    covariates.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
+    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
+    all.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
+    names.push_back(design.columns[c]);
   }
-  statistics::combat(values, covariates, levelsIn(s.siteColumn, o));
+  statistics::requireFullRank(all, names);
+  statistics::combat(values, all.rightCols(all.cols() - first), sites.of);
 }
 
 statistics::PlaceBlocks planBlocks(const GlmSettings& s, const Observations& o) {
@@ -283,6 +290,14 @@ Termination run(Context& context, const GlmSettings& s) {
   {
     auto step = context.step("inference");
     complete = inferAll(context, s, o, fitted, results);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!results.maps.contrasts[k].statistic.array().isNaN().all()) continue;
+      context.warn("contrast '" + results.contrasts[k].name +
+                   "' can be tested nowhere: no degrees of freedom are left for it" +
+                   (results.design.groups.empty()
+                        ? ""
+                        : ", as it varies between groups of people and these are too few"));
+    }
     if (!complete) step.termination(causeOf(Termination::Interrupted));
   }
   complete = writeAll(context, s, o, fitted, results) && complete;

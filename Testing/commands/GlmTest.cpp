@@ -166,6 +166,37 @@ INSTANTIATE_TEST_SUITE_P(
         BadDesign{"Formula", "~ age +", "name of a column"}),
     [](const auto& row) { return row.param.name; });
 
+TEST(Glm, AnEffectThatIsTheSitesDifferenceIsNotTested) {
+  // Patients were scanned at one site, controls at the other: no model tells which of the two it
+  // is.
+  TemporaryFolder folder;
+  std::string people = "participant_id\tgroup\tsite\tage\n", regions = "participant_id\ta\tb\tc\n";
+  for (int i = 0; i < 12; ++i) {
+    const std::string name = "sub-" + std::to_string(i);
+    people += name + (i % 2 == 0 ? "\tpatient\tA\t" : "\tcontrol\tB\t") +
+              std::to_string(20 + i * i % 7) + "\n";
+    regions += name;
+    for (int region = 0; region < 3; ++region) {
+      regions += "\t" + std::to_string(2.5 + 0.1 * (i * (region + 3) % 5));
+    }
+    regions += "\n";
+  }
+  writeText(folder / "people.tsv", people);
+  writeText(folder / "regions.tsv", regions);
+  const auto by = [&](const std::string& site) {
+    return explica({"glm", folder / "regions.tsv", "--table", folder / "people.tsv", "--model",
+                    "thickness ~ group + age", "--contrast", "g=group[patient] - group[control]",
+                    "--site", site, "--out", folder / site});
+  };
+  for (const char* site : {"fixed", "combat"}) {
+    const auto refused = by(site);
+    EXPECT_EQ(refused.exitCode, 2) << refused;
+    EXPECT_NE(refused.err.find("cannot be told from theirs"), std::string::npos) << refused;
+  }
+  const auto random = by("random");
+  EXPECT_NE(random.err.find("contrast 'g' can be tested nowhere"), std::string::npos) << random;
+}
+
 TEST(Glm, NamesPeopleOfOneListOnlyAndMapsOfOtherSizes) {
   TemporaryFolder folder;
   const TriangleMesh sphere = geometry::makeIcosphere(1, 30);

@@ -156,29 +156,6 @@ class Coder {
   std::map<std::string, Levels> levels_;
 };
 
-/// Gram-Schmidt from left to right: the first column that those before it add up to is named.
-void requireFullRank(const Design& design) {
-  const Eigen::MatrixXd& x = design.matrix;
-  if (x.rows() <= x.cols()) {
-    throw InvalidInput("the model has " + std::to_string(x.cols()) + " columns for " +
-                       std::to_string(x.rows()) + " people; take columns out or add people");
-  }
-  Eigen::MatrixXd basis(x.rows(), x.cols());
-  for (Eigen::Index c = 0; c < x.cols(); ++c) {
-    const double length = x.col(c).norm();
-    Eigen::VectorXd rest = x.col(c);
-    for (int pass = 0; pass < 2; ++pass) {
-      rest -= basis.leftCols(c) * (basis.leftCols(c).transpose() * rest);
-    }
-    if (!(rest.norm() > kDependent * length)) {
-      throw InvalidInput("column '" + design.columns[static_cast<std::size_t>(c)] +
-                         "' of the design is a sum of columns before it, so that its effect cannot "
-                         "be told from theirs; leave one of them out of the model");
-    }
-    basis.col(c) = rest.normalized();
-  }
-}
-
 void addColumns(Design& design, const Coded& coded) {
   design.matrix.conservativeResize(
       static_cast<Eigen::Index>(design.rows.size()),
@@ -191,6 +168,27 @@ void addColumns(Design& design, const Coded& coded) {
 }
 
 }  // namespace
+
+void requireFullRank(const Eigen::MatrixXd& x, const std::vector<std::string>& columns) {
+  if (x.rows() <= x.cols()) {
+    throw InvalidInput("the model has " + std::to_string(x.cols()) + " columns for " +
+                       std::to_string(x.rows()) + " people; take columns out or add people");
+  }
+  Eigen::MatrixXd basis(x.rows(), x.cols());
+  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+    const double length = x.col(c).norm();
+    Eigen::VectorXd rest = x.col(c);
+    for (int pass = 0; pass < 2; ++pass) {
+      rest -= basis.leftCols(c) * (basis.leftCols(c).transpose() * rest);
+    }
+    if (!(rest.norm() > kDependent * length)) {
+      throw InvalidInput("column '" + columns[static_cast<std::size_t>(c)] +
+                         "' of the design is a sum of columns before it, so that its effect cannot "
+                         "be told from theirs; leave one of them out of the model");
+    }
+    basis.col(c) = rest.normalized();
+  }
+}
 
 Levels levelsOf(const Table& table, std::string_view column, const std::vector<std::size_t>& rows) {
   const std::size_t place = table.at(column);
@@ -222,7 +220,7 @@ Design buildDesign(const Formula& formula, const Table& table) {
     design.terms.push_back(term);
     addColumns(design, coder.code(term));
   }
-  requireFullRank(design);
+  requireFullRank(design.matrix, design.columns);
   if (formula.randomIntercept) {
     Levels groups = levelsOf(table, *formula.randomIntercept, design.rows);
     if (groups.names.size() < 2) {

@@ -47,6 +47,13 @@ struct Design {
 ///                       columns, or a column that others add up to: names the column
 [[nodiscard]] Design buildDesign(const Formula& formula, const Table& table);
 
+/// Whether effects of a design's columns can be told from each other.
+/// @param x        people x columns
+/// @param columns  their names
+/// @throws InvalidInput  no more people than columns; or names the first column that those before
+///                       it add up to, by Gram-Schmidt from left to right
+void requireFullRank(const Eigen::MatrixXd& x, const std::vector<std::string>& columns);
+
 /// Columns of each level of a categorical column, N x levels of 0 and 1.
 struct Levels {
   std::vector<std::string> names;
