@@ -86,19 +86,25 @@ std::vector<MotionBounds> boundsOfFaces(const TriangleMesh& mesh,
   return bounds;
 }
 
-/// Appends the intersecting pairs of faces of two lists, or of one with itself.
+/// Appends the wanted pairs of faces of two lists, or of one with itself, that intersect.
+template <class Wanted>
 void intersect(const TriangleMesh& mesh, const BoundsSearch& search,
                const std::vector<std::int32_t>& first, const std::vector<std::int32_t>& second,
-               std::vector<FacePair>& pairs) {
+               std::vector<FacePair>& pairs, const Wanted& wanted) {
   const std::vector<BlockPair> blocks = blocksToShareOut(search);
   std::vector<std::vector<FacePair>> found(blocks.size());
   parallelFor(blocks.size(), 4, [&](std::size_t n) {
     visitItems(search, blocks[n], [&](std::int32_t i, std::int32_t j) {
+      if (!wanted(first[i], second[j])) return;
       const std::int32_t f = std::min(first[i], second[j]), g = std::max(first[i], second[j]);
       if (facesIntersect(mesh, f, g)) found[n].push_back({f, g});
     });
   });
   for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+}
+
+bool any(std::int32_t /*f*/, std::int32_t /*g*/) {
+  return true;
 }
 
 /// Pairs among the marked faces, and of these with the others.
@@ -110,8 +116,8 @@ std::vector<FacePair> intersectingPairs(const TriangleMesh& mesh,
   const BoundsPyramid own(boundsOfFaces(mesh, marked, origin));
   const BoundsPyramid rest(boundsOfFaces(mesh, others, origin));
   std::vector<FacePair> pairs;
-  intersect(mesh, {&own, &own, 0}, marked, marked, pairs);
-  intersect(mesh, {&own, &rest, 0}, marked, others, pairs);
+  intersect(mesh, {&own, &own, 0}, marked, marked, pairs, any);
+  intersect(mesh, {&own, &rest, 0}, marked, others, pairs, any);
   std::ranges::sort(pairs);
   return pairs;
 }
@@ -148,6 +154,44 @@ std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
   std::ranges::copy_if(before, std::back_inserter(pairs), [&](const FacePair& pair) {
     return !faceMoved[pair[0]] && !faceMoved[pair[1]];
   });
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+void SelfIntersectionSearch::sortFaces(const TriangleMesh& mesh) {
+  faces_ = mesh.allFaces();
+  origin_ = mesh.corner(0, 0);
+  sorted_ = BoundsPyramid(boundsOfFaces(mesh, faces_, origin_));
+  astray_.clear();
+  isAstray_.assign(faces_.size(), 0);
+  isMoved_.resize(faces_.size(), 0);
+}
+
+std::vector<FacePair> SelfIntersectionSearch::find(const TriangleMesh& mesh,
+                                                   const std::vector<std::int32_t>& moved) {
+  if (moved.empty()) return {};
+  constexpr double kMany = 0.25;  // share of faces beyond which all are looked through
+  const auto many = static_cast<std::size_t>(kMany * static_cast<double>(mesh.faceCount()));
+  if (faces_.empty() || astray_.size() + moved.size() > many) {
+    sortFaces(mesh);
+  }
+  for (const std::int32_t f : moved) isMoved_[f] = 1;
+  std::vector<FacePair> pairs;
+  if (moved.size() > many) {
+    intersect(mesh, {&sorted_, &sorted_, 0}, faces_, faces_, pairs,
+              [&](std::int32_t f, std::int32_t g) { return (isMoved_[f] | isMoved_[g]) != 0; });
+  } else {
+    std::erase_if(astray_, [&](std::int32_t f) { return isMoved_[f] != 0; });
+    const BoundsPyramid own(boundsOfFaces(mesh, moved, origin_));
+    const BoundsPyramid astray(boundsOfFaces(mesh, astray_, origin_));
+    intersect(mesh, {&own, &own, 0}, moved, moved, pairs, any);
+    intersect(mesh, {&own, &astray, 0}, moved, astray_, pairs, any);
+    intersect(mesh, {&own, &sorted_, 0}, moved, faces_, pairs,
+              [&](std::int32_t, std::int32_t g) { return (isMoved_[g] | isAstray_[g]) == 0; });
+    astray_.insert(astray_.end(), moved.begin(), moved.end());
+    for (const std::int32_t f : moved) isAstray_[f] = 1;
+  }
+  for (const std::int32_t f : moved) isMoved_[f] = 0;
   std::ranges::sort(pairs);
   return pairs;
 }

@@ -84,6 +84,30 @@ TEST(SelfIntersection, OfWhatDidNotMoveThePairsStay) {
   EXPECT_EQ(findSelfIntersections(mesh, moved, before), after);
 }
 
+TEST(SelfIntersection, LookAfterLookFindsWhatOneThroughAllFacesDoes) {
+  TriangleMesh mesh = makeTorus(40, 20, 1, 1.1);
+  mesh.positions.col(2) *= 2.5;
+  SelfIntersectionSearch search;
+  std::size_t found = 0;
+  // So many vertices go at each look, some of them again and again.
+  for (const int step : {1, 700, 90, 90, 350, 3, 2, 40, 40, 40, 40, 1, 90}) {
+    std::vector<bool> marked(static_cast<std::size_t>(mesh.faceCount()), false);
+    const auto moves = [&](std::int32_t v) { return v % step == step / 2; };
+    std::vector<std::int32_t> moved;
+    for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
+      marked[f] = moves(mesh.faces(f, 0)) || moves(mesh.faces(f, 1)) || moves(mesh.faces(f, 2));
+      if (marked[f]) moved.push_back(f);
+    }
+    for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+      if (moves(v)) mesh.positions.row(v) *= v % 3 == 0 ? 0.7 : 1.2;
+    }
+    const auto expected = findSelfIntersections(mesh, marked);
+    EXPECT_EQ(search.find(mesh, moved), expected) << step;
+    found += expected.size();
+  }
+  EXPECT_GT(found, 1000U);
+}
+
 TEST(SelfIntersection, FoldedEdgeAndDuplicateFaceAreFound) {
   TriangleMesh mesh;
   mesh.positions.resize(4, 3);

@@ -32,6 +32,7 @@ BorderChooser::BorderChooser(std::vector<Profile> misses, std::vector<Choice> ch
       costs_(costs),
       has_(misses_.size()) {
   for (std::size_t v = 0; v < has_.size(); ++v) has_[v] = comesNear(v);
+  for (int place = 0; place < kPlaces; ++place) ways_[place] = (place - kSide) * step / length;
 }
 
 Eigen::VectorXd BorderChooser::choose(int rounds) const {
@@ -82,26 +83,27 @@ bool BorderChooser::comesNear(std::size_t v) const {
   return false;
 }
 
-double BorderChooser::costOf(std::size_t v, int place, double mean) const {
-  const double way = (place - kSide) * step_ / length_, off = way - mean / length_;
-  const double miss = std::min(1.0F, misses_[v][place] * misses_[v][place]);
-  return miss + costs_.centring * way * way + costs_.smoothness * off * off;
-}
-
 double BorderChooser::bestOf(std::size_t v, double mean) const {
+  const double usual = mean / length_;
+  std::array<double, kPlaces> costs;
+  for (int place = 0; place < kPlaces; ++place) {
+    const float miss = misses_[v][place];
+    const double way = ways_[place], off = way - usual;
+    costs[place] =
+        std::min(1.0F, miss * miss) + costs_.centring * way * way + costs_.smoothness * off * off;
+  }
   const Choice& choice = choices_[v];
   int best = -1;
   double least = kInfinity;
   for (int place = choice.first; place <= choice.last; ++place) {
-    const double cost = costOf(v, place, mean);
-    if (!(cost < least)) continue;
-    least = cost;
+    if (!(costs[place] < least)) continue;
+    least = costs[place];
     best = place;
   }
   if (best < 0) return 0;
   double shift = 0;  // of the parabola through the best place and its neighbours
   if (best > choice.first && best < choice.last) {
-    const double before = costOf(v, best - 1, mean), after = costOf(v, best + 1, mean);
+    const double before = costs[best - 1], after = costs[best + 1];
     const double bend = before - 2 * least + after;
     if (bend > 0) shift = std::clamp(0.5 * (before - after) / bend, -0.5, 0.5);
   }

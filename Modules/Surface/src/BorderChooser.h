@@ -54,13 +54,13 @@ class BorderChooser {
 
  private:
   [[nodiscard]] bool comesNear(std::size_t v) const;
-  [[nodiscard]] double costOf(std::size_t v, int place, double mean) const;
   [[nodiscard]] double bestOf(std::size_t v, double mean) const;
 
   std::vector<Profile> misses_;
   std::vector<Choice> choices_;
   const geometry::MeshTopology& topology_;
   double step_, length_;
+  std::array<double, kPlaces> ways_;  ///< from the middle to each place, of `length`
   ChoiceCosts costs_;
   std::vector<std::uint8_t> has_;
 };

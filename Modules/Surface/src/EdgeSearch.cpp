@@ -63,7 +63,7 @@ class PathSearch {
         whole_(wholeUpTo(masked)) {}
 
   void improve() {
-    const Eigen::MatrixXd edges =
+    const VertexRows edges =
         averaged(edgesOf(averaged(profiles(), topology_, times_)), topology_, times_);
     follow(edges.col(1));
     const Eigen::VectorXd level = edges.col(0);
@@ -75,9 +75,10 @@ class PathSearch {
       const auto row = static_cast<Eigen::Index>(v);
       if (!std::isfinite(level[row])) return;
       choices[v] = choiceOf(v, step);
+      const Along path(paths_[v]);
       for (int k = 0; k < kPlaces; ++k) {
         misses[v][k] =
-            static_cast<float>((valueOf(v, way_[row] + (k - kSide) * step) - level[row]) /
+            static_cast<float>((valueOf(path, way_[row] + (k - kSide) * step) - level[row]) /
                                (usual_.white - usual_.grey));
       }
     });
@@ -89,14 +90,14 @@ class PathSearch {
   [[nodiscard]] const Eigen::VectorXd& way() const { return way_; }
 
  private:
-  [[nodiscard]] double valueOf(std::size_t v, double arc) const {
-    return usual_.sign * valueAt(image_, along(paths_[v], arc));
+  [[nodiscard]] double valueOf(const Along& path, double arc) const {
+    return usual_.sign * valueAt(image_, path.at(arc));
   }
 
   /// How far along each trajectory voxels are seen that a mask's edge leaves whole, and the size of
   /// a voxel that way, mm.
-  [[nodiscard]] Eigen::MatrixXd wholeUpTo(const MaskedImage& masked) const {
-    Eigen::MatrixXd whole = Eigen::MatrixXd::Constant(way_.size(), 2, kInfinity);
+  [[nodiscard]] VertexRows wholeUpTo(const MaskedImage& masked) const {
+    VertexRows whole = VertexRows::Constant(way_.size(), 2, kInfinity);
     if (masked.seen.size() == 0) return whole;
     const Grid& grid = masked.seen.grid;
     const double step = kProfileStep * voxel_;
@@ -120,14 +121,14 @@ class PathSearch {
     return paths_[v].length() - way_[static_cast<Eigen::Index>(v)];
   }
 
-  [[nodiscard]] Eigen::MatrixXd profiles() const {
-    Eigen::MatrixXd all =
-        Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(paths_.size()), count_, kNaN);
+  [[nodiscard]] VertexRows profiles() const {
+    VertexRows all = VertexRows::Constant(static_cast<Eigen::Index>(paths_.size()), count_, kNaN);
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
       const auto row = static_cast<Eigen::Index>(v);
+      const Along path(paths_[v]);
       for (int k = 0; k < count_; ++k) {
-        all(row, k) = valueOf(v, way_[row] + (first_ + k) * kProfileStep * voxel_);
+        all(row, k) = valueOf(path, way_[row] + (first_ + k) * kProfileStep * voxel_);
       }
       if (!all.row(row).allFinite()) all(row, 0) = kNaN;
     });
@@ -135,8 +136,8 @@ class PathSearch {
   }
 
   /// Brightness at the edge of each mean profile, and where it lies, voxels; NaN where it has none.
-  [[nodiscard]] Eigen::MatrixXd edgesOf(const Eigen::MatrixXd& mean) const {
-    Eigen::MatrixXd edges = Eigen::MatrixXd::Constant(mean.rows(), 2, kNaN);
+  [[nodiscard]] VertexRows edgesOf(const VertexRows& mean) const {
+    VertexRows edges = VertexRows::Constant(mean.rows(), 2, kNaN);
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       const auto row = static_cast<Eigen::Index>(v);
       if (!std::isfinite(mean(row, 0))) return;
@@ -192,7 +193,7 @@ class PathSearch {
   Usual usual_;
   Eigen::VectorXd way_;
   int first_, count_;
-  Eigen::MatrixXd whole_;  ///< see wholeUpTo()
+  VertexRows whole_;  ///< see wholeUpTo()
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace explica::surface {
@@ -34,15 +35,29 @@ double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel,
   const double window = kWindow * voxel, length = path.length();
   const double last = distanceAt(length), gained = last - distanceAt(0);
   if (length - gained < 0.5 * (1 - kRate) * window) return length;  // what it need not look at
-  double here = distanceAt(first), next = distanceAt(std::min(first + 0.5 * window, length));
+  // Window k goes from place k to place k + 2.
+  std::vector<double> places = {first, std::min(first + 0.5 * window, length)};
   for (double from = first; from < length; from += 0.5 * window) {
-    const double to = std::min(from + window, length);
-    const double there = to < length ? distanceAt(to) : last;
-    if (to - from >= 0.5 * window && there - here < kRate * (to - from)) return from;
-    here = next;
-    next = there;
+    places.push_back(std::min(from + window, length));
   }
-  return length;
+  std::vector<double> distances(places.size(), kNaN);
+  const auto at = [&](std::size_t k) {
+    if (std::isnan(distances[k])) distances[k] = places[k] < length ? distanceAt(places[k]) : last;
+    return distances[k];
+  };
+  // The first of some windows along which distance grows too little, or the number of all.  It
+  // grows no more than the way: what is missing of it is no more in one of them than in all.
+  const std::size_t windows = places.size() - 2;
+  const auto firstSlow = [&](const auto& self, std::size_t begin, std::size_t end) -> std::size_t {
+    const double shortest = std::max(0.5 * window, places[end + 1] - places[end - 1]);
+    const double way = places[end + 1] - places[begin];
+    if (way - (at(end + 1) - at(begin)) <= (1 - kRate) * shortest) return windows;
+    if (end - begin == 1) return way >= 0.5 * window ? begin : windows;
+    const std::size_t middle = (begin + end) / 2, found = self(self, begin, middle);
+    return found < windows ? found : self(self, middle, end);
+  };
+  const std::size_t slow = windows > 0 ? firstSlow(firstSlow, 0, windows) : 0;
+  return slow < windows ? places[slow] : length;
 }
 
 void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColumns& columns) {

@@ -26,7 +26,8 @@ bool takesTurn(std::int32_t v, int sweep) {
 }  // namespace
 
 Growth::Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths)
-    : mesh_(white), paths_(paths), reached_(paths.size(), 0.0) {
+    : mesh_(white), paths_(paths), lengths_(paths.size()), reached_(paths.size(), 0.0) {
+  for (std::size_t v = 0; v < paths.size(); ++v) lengths_[v] = paths[v].length();
   for (Eigen::Index v = 0; v < mesh_.vertexCount(); ++v) {
     mesh_.positions.row(v) = asStored(mesh_.positions.row(v));
   }
@@ -35,7 +36,7 @@ Growth::Growth(const TriangleMesh& white, const std::vector<Trajectory>& paths)
 void Growth::goTo(double share) {
   constexpr int kWays = 2;
   share_ = share;
-  const auto target = [&](std::int32_t v) { return share * paths_[v].length(); };
+  const auto target = [&](std::int32_t v) { return share * lengths_[v]; };
   const auto arcAt = [&](std::int32_t v, int way) {
     return way == 0 ? target(v) : 0.5 * (reached_[v] + target(v));
   };
@@ -50,7 +51,7 @@ void Growth::goTo(double share) {
     }
     if (!any) return;
     const std::vector<std::uint8_t> way =
-        moveTogether(mesh_, waiting, kWays,
+        moveTogether(mesh_, search_, waiting, kWays,
                      [&](std::int32_t v, int attempt) { return paths_[v].at(arcAt(v, attempt)); });
     for (std::size_t n = 0; n < waiting.size(); ++n) {
       if (way[n] < kWays) reached_[waiting[n]] = arcAt(waiting[n], way[n]);

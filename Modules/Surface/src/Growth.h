@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Monitor.h"
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Geometry/SelfIntersection.h"
 #include "RibbonPaths.h"
 
 #include <vector>
@@ -23,15 +24,14 @@ class Growth {
   void goTo(double share);
 
   /// How far a vertex fell short of the share that was asked for last, mm.
-  [[nodiscard]] double missing(std::size_t v) const {
-    return share_ * paths_[v].length() - reached_[v];
-  }
+  [[nodiscard]] double missing(std::size_t v) const { return share_ * lengths_[v] - reached_[v]; }
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
 
  private:
   TriangleMesh mesh_;
+  geometry::SelfIntersectionSearch search_;
   const std::vector<Trajectory>& paths_;
-  std::vector<double> reached_;
+  std::vector<double> lengths_, reached_;
   double share_ = 0;
 };
 

@@ -95,13 +95,11 @@ GuardedMesh::GuardedMesh(const TriangleMesh& mesh, double cell)
   }
   placeCells(low, high, cell, mesh.faceCount());
   faces_.resize(mesh.faceCount());
-  boxes_.resize(mesh.faceCount());
   scratch_.stamp.resize(mesh.faceCount(), 0);
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     faces_[f] = {mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)};
     for (const std::int32_t v : faces_[f]) vertexFaces_[v].add(static_cast<std::int32_t>(f));
   }
-  fillCells();
   faceCount_ = mesh.faceCount();
   for (std::int32_t v = 0; v < vertexSlots() && !open_; ++v) open_ = endsAt(v);
 }
@@ -121,8 +119,6 @@ void GuardedMesh::placeCells(const Point& low, const Point& high, double cell, E
   cellsPerMm_ = 1 / cell;
   roomOfBoxes_ = 1e-6 * cell;
   slack_ = static_cast<float>(kSlack * cell);
-  cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
-  occupied_.assign(cells_.size() / 64 + 1, 0);
 }
 
 Box GuardedMesh::boxOf(const std::array<Point, 3>& p) const {
@@ -354,6 +350,9 @@ class GuardedMesh::FacesOfSlabs {
 
 void GuardedMesh::fillCells() {
   constexpr std::uint32_t kLanes = BoxLanes::kLanes;
+  cells_.resize(static_cast<std::size_t>(cellSize_[0]) * cellSize_[1] * cellSize_[2]);
+  occupied_.assign(cells_.size() / 64 + 1, 0);
+  boxes_.resize(faces_.size());
   parallelFor(faces_.size(), 4096, [&](std::size_t f) {
     const Corners& c = faces_[f];
     boxes_[f] = roomy(boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]}));
@@ -522,7 +521,7 @@ void GuardedMesh::facesNear(const CellRange& range, const Box& box, Scratch& scr
 }
 
 bool GuardedMesh::move(std::int32_t v, const Point& to) {
-  return move(v, to, scratch_);
+  return move(v, to, scratch());
 }
 
 bool GuardedMesh::move(std::int32_t v, const Point& wanted, Scratch& scratch) {
@@ -568,7 +567,7 @@ bool GuardedMesh::keepsTopology(std::int32_t u, std::int32_t v) const {
 
 bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
                            const CollapseLimits& limits) {
-  return collapse(u, v, to, limits, scratch_);
+  return collapse(u, v, to, limits, scratch());
 }
 
 bool GuardedMesh::plan(std::int32_t u, std::int32_t v, const Point& wanted,
@@ -631,11 +630,11 @@ bool GuardedMesh::collapse(std::int32_t u, std::int32_t v, const Point& to,
 bool GuardedMesh::mayCollapse(std::int32_t u, std::int32_t v, const Point& to,
                               const CollapseLimits& limits) {
   Step step;
-  return plan(u, v, to, limits, scratch_, step);
+  return plan(u, v, to, limits, scratch(), step);
 }
 
 bool GuardedMesh::flip(std::int32_t a, std::int32_t b) {
-  return flip(a, b, scratch_);
+  return flip(a, b, scratch());
 }
 
 bool GuardedMesh::flip(std::int32_t a, std::int32_t b, Scratch& scratch) {
@@ -677,7 +676,7 @@ bool GuardedMesh::planSplit(std::int32_t a, std::int32_t b, std::int32_t m, Step
     make({m, a, d});
   }
   return admissible({step.made.data(), step.madeCount}, {step.removed.data(), step.removedCount},
-                    scratch_);
+                    scratch());
 }
 
 std::int32_t GuardedMesh::split(std::int32_t a, std::int32_t b) {
@@ -765,6 +764,7 @@ std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)
 std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
                                 const std::function<bool(std::int32_t, Scratch&)>& step) {
   if (vertices.empty()) return 0;
+  bringUpToDate();
   const int axis = slabAxis();
   const int slabs = (cellSize_[axis] + kSlab - 1) / kSlab;
   std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
@@ -793,6 +793,7 @@ std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
 
 void GuardedMesh::sweepEdges(const std::vector<Edge>& edges,
                              const std::function<void(const Edge&, Scratch&)>& step) {
+  bringUpToDate();
   const int axis = slabAxis();
   std::vector<std::vector<Edge>> members((cellSize_[axis] + kSlab - 1) / kSlab);
   for (const Edge& edge : edges) {
@@ -826,10 +827,22 @@ TriangleMesh GuardedMesh::withAllSlots() const {
 std::int64_t GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
                                        const Attempts& to) {
   TriangleMesh mesh = withAllSlots();
-  const std::vector<std::uint8_t> stand = surface::moveTogether(mesh, vertices, attempts, to);
+  geometry::SelfIntersectionSearch search;
+  const std::vector<std::uint8_t> stand =
+      surface::moveTogether(mesh, search, vertices, attempts, to);
   for (const std::int32_t v : vertices) positions_[v] = mesh.positions.row(v);
-  reboxAll();
+  stale_ = true;
   return std::count(stand.begin(), stand.end(), static_cast<std::uint8_t>(attempts));
+}
+
+void GuardedMesh::bringUpToDate() {
+  if (!filled_) {
+    fillCells();
+  } else if (stale_) {
+    reboxAll();
+  }
+  filled_ = true;
+  stale_ = false;
 }
 
 void GuardedMesh::reboxAll() {

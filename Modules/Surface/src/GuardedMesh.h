@@ -91,7 +91,10 @@ class GuardedMesh {
     bool leftZone = false;  ///< a move was refused because it would touch others
   };
   /// That of work on the whole mesh, outside of sweeps.
-  [[nodiscard]] Scratch& scratch() { return scratch_; }
+  [[nodiscard]] Scratch& scratch() {
+    bringUpToDate();
+    return scratch_;
+  }
   /// As move(), within the zone of `scratch`.
   bool move(std::int32_t v, const Point& to, Scratch& scratch);
 
@@ -220,7 +223,8 @@ class GuardedMesh {
   class FacesOfSlabs;
   void leave(std::int32_t f);
   void rebox(std::int32_t f, const Box& box);
-  /// Brings the cells up to date after all vertices may have moved.
+  /// Fills the cells if they are needed the first time, or after vertices have moved together.
+  void bringUpToDate();
   void reboxAll();
   /// The faces there are; vertices keep their numbers, those without faces too.
   [[nodiscard]] TriangleMesh withAllSlots() const;
@@ -246,6 +250,7 @@ class GuardedMesh {
   std::vector<Entries> store_;
   std::vector<Cell> cells_;
   std::vector<std::uint64_t> occupied_;  ///< a bit a cell: 0 where there never was a face
+  bool filled_ = false, stale_ = false;  ///< the cells: at all, as the vertices are no more
   Scratch scratch_;
   std::vector<Scratch> slabScratch_;
 };

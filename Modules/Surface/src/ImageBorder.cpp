@@ -58,10 +58,10 @@ enum class SenseOf { White, Outer };
 
 /// Sums and counts of white matter's brightness deep inside, along each trajectory.
 /// @param inner  as distanceLevelOf(): positive in white matter
-Eigen::MatrixXd deepWhite(const std::vector<Trajectory>& paths, const LevelSet& inner,
-                          const Volume<float>& image, double voxel) {
+VertexRows deepWhite(const std::vector<Trajectory>& paths, const LevelSet& inner,
+                     const Volume<float>& image, double voxel) {
   const double band = bandOf(inner.grid);
-  Eigen::MatrixXd found = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(paths.size()), 2);
+  VertexRows found = VertexRows::Zero(static_cast<Eigen::Index>(paths.size()), 2);
   parallelFor(paths.size(), 256, [&](std::size_t v) {
     if (paths[v].end == TrajectoryEnd::NoRibbon) return;
     for (const double depth : kWhiteDepths) {
@@ -90,7 +90,7 @@ Tissues brightnessOf(const std::vector<Trajectory>& paths, const MaskedImage& ma
   const auto n = static_cast<Eigen::Index>(paths.size());
   Tissues found;
   found.grey = found.outside = found.covered = Eigen::VectorXd::Constant(n, kNaN);
-  Eigen::MatrixXd white = deepWhite(paths, inner, image, voxel);
+  VertexRows white = deepWhite(paths, inner, image, voxel);
   found.noise = noiseOf(white.col(0).cwiseQuotient(white.col(1)), topology);
   white = averaged(std::move(white), topology, timesFor(kWhiteSpread * voxel, edge));
   found.white = white.col(0).cwiseQuotient(white.col(1));
@@ -202,8 +202,9 @@ std::vector<Profile> missesOf(const std::vector<Trajectory>& paths, bool outer,
     const double border = outer ? paths[v].length() : 0;
     bool any = !isFlat;
     Profile found;
+    const Along path(paths[v]);
     for (int k = 0; k < kPlaces; ++k) {
-      const Point at = along(paths[v], border + (k - kSide) * step);
+      const Point at = path.at(border + (k - kSide) * step);
       const double value = valueAt(masked.image, at);
       double miss = isFlat ? 1 : sign * (value - edge.level[row]) / edge.contrast[row];
       if (darkIsOutside) miss = std::min(miss, missOfDark(value, edge.inside[row]));

@@ -129,8 +129,9 @@ std::vector<std::int32_t> smallFaces(const TriangleMesh& mesh, double leastArea)
 }
 
 /// Pushes, sweep by sweep, what is known to be near; returns what is left of it.
-Cramped sweepApart(TriangleMesh& mesh, const CollisionScene& scene,
-                   const std::vector<Pair>& candidates, const Room& room) {
+Cramped sweepApart(TriangleMesh& mesh, geometry::SelfIntersectionSearch& search,
+                   const CollisionScene& scene, const std::vector<Pair>& candidates,
+                   const Room& room) {
   const Positions start = mesh.positions;
   std::vector<Proximity> proximities(candidates.size());
   for (int sweep = 0;; ++sweep) {
@@ -155,7 +156,7 @@ Cramped sweepApart(TriangleMesh& mesh, const CollisionScene& scene,
     if (sweep >= kTogether) {
       std::erase_if(vertices, [&](std::int32_t v) { return !isItsTurn(v, sweep); });
     }
-    moveTogether(mesh, vertices, static_cast<int>(kRoomShares.size()),
+    moveTogether(mesh, search, vertices, static_cast<int>(kRoomShares.size()),
                  [&](std::int32_t v, int attempt) {
                    return pushes.goal(v, start.row(v), from.row(v), kRoomShares[attempt]);
                  });
@@ -172,12 +173,13 @@ Cramped keepRoom(TriangleMesh& mesh, const Room& room) {
   const CollisionScene scene(mesh,
                              std::vector<bool>(static_cast<std::size_t>(mesh.vertexCount()), true));
   const Positions still = Positions::Zero(mesh.vertexCount(), 3);
+  geometry::SelfIntersectionSearch search;
   Cramped left;
   for (int look = 0; look < kLooks; ++look) {
     const bool shrunk = !smallFaces(mesh, room.leastArea).empty();
     // Two vertices that move by the gap each come no nearer than it to what is left out.
     const std::vector<Pair> candidates = scene.findPairs(mesh.positions, still, 3 * room.gap);
-    left = sweepApart(mesh, scene, candidates, room);
+    left = sweepApart(mesh, search, scene, candidates, room);
     if (!shrunk && left.pairs == 0) break;
   }
   return left;

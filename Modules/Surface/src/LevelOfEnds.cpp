@@ -37,9 +37,10 @@ void addPlaces(const Trajectory& path, PathBorder border, double moved, const Gr
   const double most = border == PathBorder::Inner ? length : length + around;
   const double first = std::max(least, old + std::min(0.0, moved) - around);
   const double last = std::min(most, old + around);
+  const Along whole(path);
   for (double arc = first; arc <= last; arc += step) {
-    const Point at = along(path, arc);
-    const Vector way = along(path, arc + 0.5 * step) - along(path, arc - 0.5 * step);
+    const Point at = whole.at(arc);
+    const Vector way = whole.at(arc + 0.5 * step) - whole.at(arc - 0.5 * step);
     const Vector axes = (grid.direction.transpose() * way.normalized()).cwiseProduct(grid.spacing);
     places.push_back({grid.toIndex(at).cast<float>(), axes.cast<float>(),
                       static_cast<float>(old - arc), static_cast<float>(moved)});

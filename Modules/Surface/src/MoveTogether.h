@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Geometry/SelfIntersection.h"
 
 #include <cstdint>
 #include <functional>
@@ -24,11 +25,12 @@ using Attempts = std::function<Point(std::int32_t v, int attempt)>;
 /// after another, each past its neighbours.
 ///
 /// @param mesh      without self-intersection; positions are float32 numbers
+/// @param search    this mesh's: no one else has moved its vertices since
 /// @param vertices  that move, each once
 /// @param attempts  number of attempts, > 0
 /// @return  per vertex of `vertices`, the attempt that it stands at; `attempts` where it has
 /// stayed. Does not depend on the number of threads.
-std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh,
+std::vector<std::uint8_t> moveTogether(TriangleMesh& mesh, geometry::SelfIntersectionSearch& search,
                                        const std::vector<std::int32_t>& vertices, int attempts,
                                        const Attempts& to);
 

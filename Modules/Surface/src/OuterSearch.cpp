@@ -43,8 +43,9 @@ class Search {
   [[nodiscard]] Eigen::RowVector2d greyAt(std::size_t v) const {
     const double length = paths_[v].length();
     if (paths_[v].end == TrajectoryEnd::NoRibbon || length > kTooLong * usual_) return {0, 0};
+    const Along path(paths_[v]);
     double sum = 0;
-    for (const double share : kGreyPlaces) sum += valueOf(v, share * depthOf(v));
+    for (const double share : kGreyPlaces) sum += valueOf(path, share * depthOf(v));
     if (!std::isfinite(sum)) return {0, 0};
     return {sum / kGreyPlaces.size(), 1};
   }
@@ -54,45 +55,63 @@ class Search {
     std::vector<double> contrasts(paths_.size(), kNaN);
     parallelFor(paths_.size(), 256, [&](std::size_t v) {
       if (paths_[v].end == TrajectoryEnd::NoRibbon) return;
-      contrasts[v] = grey[static_cast<Eigen::Index>(v)] - firstDarkest(v, kInfinity).first;
+      Outward outward = outwardOn(v);
+      contrasts[v] = grey[static_cast<Eigen::Index>(v)] - firstDarkest(outward, kInfinity).first;
     });
     return median(std::move(contrasts));
-  }
-
-  /// The darkest from the middle of the ribbon on, until it rises again.
-  /// @param rise  what is no noise
-  /// @return brightness and place
-  [[nodiscard]] std::pair<double, double> firstDarkest(std::size_t v, double rise) const {
-    std::pair least(kInfinity, paths_[v].length());
-    const double last = paths_[v].length() + options_.beyond * voxel_;
-    for (double at = 0.5 * depthOf(v); at <= last; at += kFine * voxel_) {
-      const double value = smoothOf(v, at);
-      if (value > least.first + rise) break;
-      if (value < least.first) least = {value, at};
-    }
-    return least;
   }
 
   /// Where the trajectory is half way to the darkest; its length if that is farther or nowhere.
   [[nodiscard]] double borderOf(std::size_t v, double grey, double contrast) const {
     const double length = paths_[v].length();
-    const auto [darkest, place] = firstDarkest(v, options_.flat * contrast);
-    if (!(grey - darkest > options_.flat * contrast) || !isSeen(v, place)) return length;
-    double at = place;
-    while (at > 0.5 * depthOf(v) && smoothOf(v, at) < 0.5 * (grey + darkest)) at -= kFine * voxel_;
-    return std::min(at, length);
+    Outward outward = outwardOn(v);
+    auto [darkest, place] = firstDarkest(outward, options_.flat * contrast);
+    if (!(grey - darkest > options_.flat * contrast)) return length;
+    if (!isSeen(v, arcOf(outward, place))) return length;
+    while (place > 0 && smoothAt(outward, place) < 0.5 * (grey + darkest)) --place;
+    return std::min(arcOf(outward, place), length);
   }
 
  private:
   [[nodiscard]] double depthOf(std::size_t v) const { return std::min(usual_, paths_[v].length()); }
+  /// Brightness at places of a trajectory from the middle of the ribbon on, each looked at once.
+  struct Outward {
+    Along path;
+    double first, last;          ///< of them, mm along the trajectory
+    std::vector<double> values;  ///< from two places before the first
+  };
+  [[nodiscard]] Outward outwardOn(std::size_t v) const {
+    const double last = paths_[v].length() + options_.beyond * voxel_;
+    return {Along(paths_[v]), 0.5 * depthOf(v), last, {}};
+  }
+  [[nodiscard]] double arcOf(const Outward& outward, int place) const {
+    return outward.first + place * kFine * voxel_;
+  }
   /// Mean over a voxel, against noise.
-  [[nodiscard]] double smoothOf(std::size_t v, double arc) const {
+  [[nodiscard]] double smoothAt(Outward& outward, int place) const {
+    while (static_cast<int>(outward.values.size()) < place + 5) {
+      const int next = static_cast<int>(outward.values.size()) - 2;
+      outward.values.push_back(valueOf(outward.path, arcOf(outward, next)));
+    }
     double sum = 0;
-    for (int k = -2; k <= 2; ++k) sum += valueOf(v, arc + k * kFine * voxel_);
+    for (int k = 0; k < 5; ++k) sum += outward.values[place + k];
     return sum / 5;
   }
-  [[nodiscard]] double valueOf(std::size_t v, double arc) const {
-    return sign_ * valueAt(image_.image, along(paths_[v], arc));
+
+  /// The darkest until it rises again, and its place.
+  /// @param rise  what is no noise
+  [[nodiscard]] std::pair<double, int> firstDarkest(Outward& outward, double rise) const {
+    std::pair least(kInfinity, 0);
+    for (int place = 0; arcOf(outward, place) <= outward.last; ++place) {
+      const double value = smoothAt(outward, place);
+      if (value > least.first + rise) break;
+      if (value < least.first) least = {value, place};
+    }
+    return least;
+  }
+
+  [[nodiscard]] double valueOf(const Along& path, double arc) const {
+    return sign_ * valueAt(image_.image, path.at(arc));
   }
   /// True if the image shows a voxel more than that place.
   [[nodiscard]] bool isSeen(std::size_t v, double arc) const {
@@ -113,7 +132,7 @@ Eigen::VectorXd searchOuter(const std::vector<Trajectory>& paths,
                             double fluidContrast, const OuterSearchOptions& options) {
   const Search search(paths, image, voxel, sign, options);
   const auto n = static_cast<Eigen::Index>(paths.size());
-  Eigen::MatrixXd seen(n, 2);
+  VertexRows seen(n, 2);
   parallelFor(paths.size(), 256,
               [&](std::size_t v) { seen.row(static_cast<Eigen::Index>(v)) = search.greyAt(v); });
   seen = averaged(std::move(seen), topology, timesFor(options.greySpread * voxel, edge));

@@ -13,23 +13,29 @@
 
 namespace explica::surface {
 
-Point along(const Trajectory& path, double arc) {
+Along::Along(const Trajectory& path) : path_(path), length_(path.length()) {
   const std::size_t n = path.points.size();
-  if (n > 1 && arc < 0) {
-    return path.points[0] - arc * (path.points[0] - path.points[1]).normalized();
-  }
-  if (n > 1 && arc > path.length()) {
-    const Vector way = (path.points[n - 1] - path.points[n - 2]).normalized();
-    return path.points[n - 1] + (arc - path.length()) * way;
-  }
-  return path.at(arc);
+  if (n < 2) return;
+  inward_ = (path.points[0] - path.points[1]).normalized();
+  outward_ = (path.points[n - 1] - path.points[n - 2]).normalized();
+}
+
+Point Along::at(double arc) const {
+  if (arc < 0) return path_.points.front() - arc * inward_;
+  if (arc > length_) return path_.points.back() + (arc - length_) * outward_;
+  return path_.at(arc);
+}
+
+Point along(const Trajectory& path, double arc) {
+  return Along(path).at(arc);
 }
 
 Trajectory between(const Trajectory& path, double from, double to) {
   Trajectory part;
   part.end = path.end;
+  const Along whole(path);
   const auto add = [&](double arc) {
-    part.points.push_back(along(path, arc));
+    part.points.push_back(whole.at(arc));
     part.along.push_back(static_cast<float>(arc - from));
   };
   add(from);
@@ -51,11 +57,16 @@ double valueAt(const Volume<float>& image, const Point& p) {
     base[a] = std::min(static_cast<int>(index[a]), std::max(0, grid.size[a] - 2));
     t[a] = index[a] - base[a];
   }
+  const std::size_t line = grid.size[0], slice = line * grid.size[1];
+  const float* const first = &image(base[0], base[1], base[2]);
+  const Eigen::Array2d x(1 - t[0], t[0]);
   double sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    const int i = c & 1, j = c >> 1 & 1, k = c >> 2;
-    const double weight = (i ? t[0] : 1 - t[0]) * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
-    if (weight > 0) sum += weight * image(base[0] + i, base[1] + j, base[2] + k);
+  for (int c = 0; c < 4; ++c) {
+    const int j = c & 1, k = c >> 1;
+    const Eigen::Array2d weight = x * (j ? t[1] : 1 - t[1]) * (k ? t[2] : 1 - t[2]);
+    const float* const row = first + j * line + k * slice;
+    if (weight[0] > 0) sum += weight[0] * row[0];
+    if (weight[1] > 0) sum += weight[1] * row[1];
   }
   return sum;
 }
@@ -86,12 +97,12 @@ std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
   return near;
 }
 
-Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& topology,
-                         int times) {
+VertexRows averaged(VertexRows values, const geometry::MeshTopology& topology, int times) {
+  VertexRows next(values.rows(), values.cols());
   for (int pass = 0; pass < times; ++pass) {
-    Eigen::MatrixXd next = values;
     parallelFor(topology.vertexVertices.size(), 1024, [&](std::size_t v) {
       const auto row = static_cast<Eigen::Index>(v);
+      next.row(row) = values.row(row);
       if (!std::isfinite(values(row, 0))) return;
       int count = 1;
       for (const std::int32_t w : topology.vertexVertices[v]) {
@@ -101,7 +112,7 @@ Eigen::MatrixXd averaged(Eigen::MatrixXd values, const geometry::MeshTopology& t
       }
       next.row(row) /= count;
     });
-    values = std::move(next);
+    std::swap(values, next);
   }
   return values;
 }

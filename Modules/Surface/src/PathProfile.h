@@ -13,7 +13,20 @@
 
 namespace explica::surface {
 
-/// Point of a trajectory at any arc length, mm; straight beyond its ends.
+/// A trajectory, carried on straight beyond its ends.  Keeps a reference to it.
+class Along {
+ public:
+  explicit Along(const Trajectory& path);
+  /// Point at any arc length, mm.
+  [[nodiscard]] Point at(double arc) const;
+
+ private:
+  const Trajectory& path_;
+  double length_;
+  Vector inward_ = Vector::Zero(), outward_ = Vector::Zero();  ///< unit ways beyond the ends
+};
+
+/// A point of it.
 [[nodiscard]] Point along(const Trajectory& path, double arc);
 
 /// The part of a trajectory between two borders; it is carried on straight where they lie beyond
@@ -35,11 +48,14 @@ namespace explica::surface {
 [[nodiscard]] std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
                                                        const geometry::MeshTopology& topology);
 
+/// Values at each vertex, side by side.
+using VertexRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Means over a vertex and its ring, `times` over; rows that begin with NaN are not known and take
 /// no part.
 /// @param values  V x any number
-[[nodiscard]] Eigen::MatrixXd averaged(Eigen::MatrixXd values,
-                                       const geometry::MeshTopology& topology, int times);
+[[nodiscard]] VertexRows averaged(VertexRows values, const geometry::MeshTopology& topology,
+                                  int times);
 
 /// How often averaged() has to be told for a window of that deviation, mm, on a mesh of edges of
 /// that length, mm: each time adds the variance of a vertex and six neighbours, 3/7 of a squared

@@ -38,9 +38,10 @@ std::vector<std::int32_t> lowerSheet(int n) {
 
 TEST(MoveTogether, GoesAllTheWayWhereNothingIsInTheWay) {
   TriangleMesh mesh = twoSheets(6);
-  const auto attempt = moveTogether(mesh, lowerSheet(6), 2, [&](std::int32_t v, int) -> Point {
-    return Point(v % 6, v / 6, 0.5);
-  });
+  geometry::SelfIntersectionSearch search;
+  const auto attempt =
+      moveTogether(mesh, search, lowerSheet(6), 2,
+                   [&](std::int32_t v, int) -> Point { return Point(v % 6, v / 6, 0.5); });
   for (const std::uint8_t a : attempt) EXPECT_EQ(a, 0);
   EXPECT_EQ(mesh.positions(0, 2), 0.5);
 }
@@ -50,10 +51,12 @@ TEST(MoveTogether, WhatWouldMeetTakesTheNextAttemptOrStays) {
   TriangleMesh mesh = twoSheets(n);
   const TriangleMesh before = mesh;
   // One corner of the lower sheet would go through the upper one, all the way and half of it.
-  const auto attempt = moveTogether(mesh, lowerSheet(n), 2, [&](std::int32_t v, int way) -> Point {
-    const int i = v % n, j = v / n;
-    return Point(i, j, (i < 3 && j < 3 ? 4.0 : 0.5) / (way + 1));
-  });
+  geometry::SelfIntersectionSearch search;
+  const auto attempt =
+      moveTogether(mesh, search, lowerSheet(n), 2, [&](std::int32_t v, int way) -> Point {
+        const int i = v % n, j = v / n;
+        return Point(i, j, (i < 3 && j < 3 ? 4.0 : 0.5) / (way + 1));
+      });
   EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
   EXPECT_EQ(attempt[0], 2);
   EXPECT_EQ(mesh.positions.row(0), before.positions.row(0));

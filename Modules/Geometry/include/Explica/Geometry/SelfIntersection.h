@@ -3,8 +3,10 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Geometry/BoundsPyramid.h"
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -26,5 +28,25 @@ using FacePair = std::array<std::int32_t, 2>;  ///< smaller face first
 [[nodiscard]] std::vector<FacePair> findSelfIntersections(const TriangleMesh& mesh,
                                                           const std::vector<bool>& faceMoved,
                                                           std::span<const FacePair> before);
+
+/// Looks through one mesh again and again while its vertices move.  Where most faces lie is known
+/// from an earlier look, so that a look after few of them have moved costs little more than these.
+class SelfIntersectionSearch {
+ public:
+  /// @param mesh   the same at every look but for where its vertices are
+  /// @param moved  faces that have moved since the last look, each once; any the first time
+  /// @return pairs with at least one of these, sorted
+  [[nodiscard]] std::vector<FacePair> find(const TriangleMesh& mesh,
+                                           const std::vector<std::int32_t>& moved);
+
+ private:
+  void sortFaces(const TriangleMesh& mesh);
+
+  Point origin_ = Point::Zero();
+  std::vector<std::int32_t> faces_;
+  BoundsPyramid sorted_;              ///< of all faces, as they lay once
+  std::vector<std::int32_t> astray_;  ///< that have moved since
+  std::vector<std::uint8_t> isAstray_, isMoved_;
+};
 
 }  // namespace explica::geometry
