@@ -66,7 +66,8 @@ class MeetingFilter {
       : scene_(scene), kind_(kind), start_(start), motion_(motion), reach_(reach) {}
 
   void add(std::int32_t first, std::int32_t second) {
-    const std::array<std::int32_t, 4> v = verticesOf(first, second);
+    pairs_[count_] = {kind_, first, second};
+    const std::array<std::int32_t, 4> v = scene_.vertices(pairs_[count_]);
     const bool apart = kind_ == PairKind::VertexFace
                            ? v[0] != v[1] && v[0] != v[2] && v[0] != v[3]
                            : v[0] != v[2] && v[0] != v[3] && v[1] != v[2] && v[1] != v[3];
@@ -77,7 +78,6 @@ class MeetingFilter {
         batch_.motion[i][k][count_] = motion_(v[i + 1], k) - motion_(v[0], k);
       }
     }
-    pairs_[count_] = {kind_, first, second};
     if (++count_ == kernels::PairBatch::kLanes) test();
   }
 
@@ -87,25 +87,7 @@ class MeetingFilter {
   }
 
  private:
-  [[nodiscard]] std::array<std::int32_t, 4> verticesOf(std::int32_t first,
-                                                       std::int32_t second) const {
-    if (kind_ == PairKind::VertexFace) {
-      const std::int32_t* const face = scene_.faces().data() + 3 * std::ptrdiff_t{second};
-      return {first, face[0], face[1], face[2]};
-    }
-    const std::int32_t* const edges = scene_.edges().data();
-    const std::int32_t *const a = edges + 2 * std::ptrdiff_t{first}, *const b =
-                                                                         edges +
-                                                                         2 * std::ptrdiff_t{second};
-    return {a[0], a[1], b[0], b[1]};
-  }
-
   void test() {
-    for (int n = count_; n < kernels::PairBatch::kLanes; ++n) {
-      for (int i = 0; i < 3; ++i) {
-        for (int k = 0; k < 3; ++k) batch_.at[i][k][n] = batch_.motion[i][k][n] = 0;
-      }
-    }
     if (kind_ == PairKind::VertexFace) {
       kernels::separateVertexFace(batch_);
     } else {
@@ -362,49 +344,32 @@ std::vector<Meeting> CollisionScene::updateMeetings(std::span<const Meeting> kno
 
 std::vector<Pair> CollisionScene::findPairs(const Positions& start, const Positions& motion,
                                             double reach) const {
-  const std::vector<Meeting> meetings = findMeetings(start, motion, reach);
+  return pairsOf(findMeetings(start, motion, reach));
+}
+
+std::vector<Pair> pairsOf(std::span<const Meeting> meetings) {
   std::vector<Pair> pairs(meetings.size());
-  for (std::size_t n = 0; n < pairs.size(); ++n) pairs[n] = meetings[n].pair;
+  std::ranges::transform(meetings, pairs.begin(), &Meeting::pair);
   return pairs;
-}
-
-namespace {
-
-/// The least of the safe times of `count` pairs, those that timeOf(n, limit) gives.
-template <class TimeOf>
-double leastTime(std::size_t count, double limit, const TimeOf& timeOf) {
-  constexpr std::size_t kGrain = 512;  // elements a task
-  std::vector<double> safe((count + kGrain - 1) / kGrain, limit);
-  parallelForBlocks(count, kGrain, [&](std::size_t begin, std::size_t end) {
-    double& mine = safe[begin / kGrain];
-    for (std::size_t n = begin; n < end; ++n) mine = std::min(mine, timeOf(n, mine));
-  });
-  for (const double t : safe) limit = std::min(limit, t);
-  return limit;
-}
-
-}  // namespace
-
-double largestSafeStep(const CollisionScene& scene, std::span<const Pair> pairs,
-                       const Positions& start, const Positions& motion, double limit,
-                       const AdvanceOptions& options) {
-  return leastTime(pairs.size(), limit, [&](std::size_t n, double atMost) {
-    return safeTime(pairs[n].kind, scene.points(pairs[n], start), scene.points(pairs[n], motion),
-                    atMost, options);
-  });
 }
 
 double largestSafeStep(const CollisionScene& scene, std::span<const Meeting> meetings,
                        const Positions& start, const Positions& motion, double limit,
                        const AdvanceOptions& options) {
+  constexpr std::size_t kGrain = 512;  // elements a task
   constexpr double kRoundDown = 1 - 1e-9;
-  return leastTime(meetings.size(), limit, [&](std::size_t n, double atMost) {
-    const Meeting& m = meetings[n];
-    const double room = kRoundDown * (m.separation - options.gap(m.separation));
-    if (room > 0 && atMost * m.closing <= room) return atMost;
-    return safeTime(m.pair.kind, scene.points(m.pair, start), scene.points(m.pair, motion), atMost,
-                    options);
+  std::vector<double> safe((meetings.size() + kGrain - 1) / kGrain, limit);
+  parallelForBlocks(meetings.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    double& least = safe[begin / kGrain];
+    for (const Meeting& m : meetings.subspan(begin, end - begin)) {
+      const double room = kRoundDown * (m.separation - options.gap(m.separation));
+      if (room > 0 && least * m.closing <= room) continue;
+      least = std::min(least, safeTime(m.pair.kind, scene.points(m.pair, start),
+                                       scene.points(m.pair, motion), least, options));
+    }
   });
+  for (const double t : safe) limit = std::min(limit, t);
+  return limit;
 }
 
 }  // namespace explica::collision

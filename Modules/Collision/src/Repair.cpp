@@ -3,8 +3,10 @@
 
 #include "Explica/Collision/Repair.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Geometry/FaceTree.h"
+#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -25,22 +27,20 @@ class MovedGroups {
   MovedGroups(const geometry::MeshTopology& topology, const Positions& before,
               const Positions& after)
       : groupOf_(static_cast<std::size_t>(before.rows()), -1) {
-    std::vector<std::int32_t> stack;
+    const auto moved = [&](std::int32_t v) { return before.row(v) != after.row(v); };
+    DisjointSets sets(groupOf_.size());
     for (std::int32_t v = 0; v < before.rows(); ++v) {
-      if (groupOf_[v] >= 0 || before.row(v) == after.row(v)) continue;
-      members_.emplace_back();
-      stack = {v};
-      groupOf_[v] = static_cast<std::int32_t>(members_.size()) - 1;
-      while (!stack.empty()) {
-        const std::int32_t w = stack.back();
-        stack.pop_back();
-        members_.back().push_back(w);
-        for (const std::int32_t n : topology.vertexVertices[w]) {
-          if (groupOf_[n] >= 0 || before.row(n) == after.row(n)) continue;
-          groupOf_[n] = groupOf_[v];
-          stack.push_back(n);
-        }
+      if (!moved(v)) continue;
+      for (const std::int32_t n : topology.vertexVertices[v]) {
+        if (moved(n)) sets.join(v, n);
       }
+    }
+    for (std::int32_t v = 0; v < before.rows(); ++v) {
+      if (!moved(v)) continue;
+      if (sets.root(v) == v) members_.emplace_back();
+      groupOf_[v] = sets.root(v) == v ? static_cast<std::int32_t>(members_.size()) - 1
+                                      : groupOf_[sets.root(v)];
+      members_[groupOf_[v]].push_back(v);
     }
   }
 
@@ -93,42 +93,28 @@ std::vector<std::int32_t> movedFaces(const Piece& piece) {
   return faces;
 }
 
-geometry::Box boxOf(const TriangleMesh& mesh, std::int32_t face) {
-  geometry::Box box;
-  for (int k = 0; k < 3; ++k) box.extend(mesh.corner(face, k));
-  return box;
-}
-
 /// Pairs of a moved face of `a` and a face of `b` that meet, for given positions of both.
 std::vector<FacePair> meetings(const TriangleMesh& a, const std::vector<std::int32_t>& moved,
                                const TriangleMesh& b) {
   if (moved.empty()) return {};
-  std::vector<geometry::Box> boxes;
-  boxes.reserve(moved.size());
-  for (const std::int32_t f : moved) boxes.push_back(boxOf(a, f));
-  const geometry::BoxTree tree(boxes);
+  const geometry::SubMesh partA = geometry::extractFaces(a, moved);
+  const geometry::BoxTree tree(geometry::faceBoxes(partA.mesh));
+  const std::vector<geometry::Box> boxes = geometry::faceBoxes(b);
   std::vector<std::int32_t> near;
   for (std::int32_t f = 0; f < b.faceCount(); ++f) {
     bool meets = false;
-    tree.forOverlaps(boxOf(b, f), [&meets](std::int32_t) { meets = true; });
+    tree.forOverlaps(boxes[f], [&meets](std::int32_t) { meets = true; });
     if (meets) near.push_back(f);
   }
   if (near.empty()) return {};
-  const geometry::SubMesh partA = geometry::extractFaces(a, moved),
-                          partB = geometry::extractFaces(b, near);
-  TriangleMesh both;
-  both.positions.resize(partA.mesh.vertexCount() + partB.mesh.vertexCount(), 3);
-  both.positions << partA.mesh.positions, partB.mesh.positions;
-  both.faces.resize(partA.mesh.faceCount() + partB.mesh.faceCount(), 3);
-  both.faces << partA.mesh.faces,
-      (partB.mesh.faces.array() + static_cast<std::int32_t>(partA.mesh.vertexCount())).matrix();
+  const geometry::SubMesh partB = geometry::extractFaces(b, near);
   const auto border = static_cast<std::int32_t>(partA.mesh.faceCount());
   std::vector<FacePair> pairs;
-  for (const FacePair& pair : geometry::findSelfIntersections(both)) {
+  for (const FacePair& pair :
+       geometry::findSelfIntersections(geometry::joined(partA.mesh, partB.mesh))) {
     if (pair[0] >= border || pair[1] < border) continue;  // of one surface
     pairs.push_back({partA.faceOrigin[pair[0]], partB.faceOrigin[pair[1] - border]});
   }
-  std::ranges::sort(pairs);
   return pairs;
 }
 
@@ -282,8 +268,7 @@ std::vector<RepairedSurface> repairSurfaces(std::span<const TriangleMesh> surfac
   std::vector<Untangling> untangled;
   for (std::size_t n = 0; n < surfaces.size(); ++n) {
     const auto from = static_cast<double>(n), all = static_cast<double>(surfaces.size());
-    untangled.push_back(
-        untangle(surfaces[n], options.untangle, monitor.part(from / all, (from + 1) / all)));
+    untangled.push_back(untangle(surfaces[n], {}, monitor.part(from / all, (from + 1) / all)));
     TriangleMesh now{untangled.back().positions, surfaces[n].faces};
     MovedGroups groups(topology, surfaces[n].positions, now.positions);
     pieces.push_back({&surfaces[n], std::move(now), std::move(groups)});

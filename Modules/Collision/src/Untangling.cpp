@@ -25,24 +25,33 @@ using geometry::FacePair;
 using Matrix = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
+constexpr int kMostRings = 5;       // of vertices about crossing faces that may move
+constexpr double kFarthest = 3;     // mean edge lengths of the place that a vertex goes at most
+constexpr int kDescentSteps = 120;  // along the gradient of the crossings' length
+
 /// Crossing pairs that are mended together, and the vertices that may move for it.
 struct Group {
   std::vector<FacePair> pairs;
   std::vector<std::int32_t> free;
 };
 
+/// Ascending, none twice.
+std::vector<std::int32_t> inOrder(std::vector<std::int32_t> list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
 std::vector<std::int32_t> withRings(const geometry::MeshTopology& topology,
                                     std::vector<std::int32_t> vertices, int rings) {
-  for (int ring = 0; ring <= rings; ++ring) {
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (ring == rings) break;
+  for (int ring = 0; ring < rings; ++ring) {
+    vertices = inOrder(std::move(vertices));
     for (std::size_t n = 0, count = vertices.size(); n < count; ++n) {
       const auto around = topology.vertexVertices[vertices[n]];
       vertices.insert(vertices.end(), around.begin(), around.end());
     }
   }
-  return vertices;
+  return inOrder(std::move(vertices));
 }
 
 /// Pairs whose free vertices overlap belong together, so that no crossing is half in a group.
@@ -69,7 +78,7 @@ std::vector<Group> groupsOf(const TriangleMesh& mesh, const geometry::MeshTopolo
   }
   std::vector<Group> result;
   for (auto& [first, group] : groups) {
-    group.free = withRings(topology, std::move(group.free), 0);
+    group.free = inOrder(std::move(group.free));
     result.push_back(std::move(group));
   }
   return result;
@@ -83,16 +92,14 @@ std::vector<std::int32_t> facesAround(const geometry::MeshTopology& topology,
     const auto around = topology.vertexFaces[v];
     faces.insert(faces.end(), around.begin(), around.end());
   }
-  std::ranges::sort(faces);
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  return faces;
+  return inOrder(std::move(faces));
 }
 
 /// The place of one group: every face that the moving ones can reach, on vertices of its own.
 class Place {
  public:
   Place(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
-        const std::vector<geometry::Box>& boxes, const Group& group, double largestMove)
+        const std::vector<geometry::Box>& boxes, const Group& group)
       : group_(group) {
     const std::vector<std::int32_t> moving = facesAround(topology, group.free);
     double sum = 0;
@@ -100,7 +107,7 @@ class Place {
       for (int k = 0; k < 3; ++k) sum += (mesh.corner(f, k) - mesh.corner(f, (k + 1) % 3)).norm();
     }
     edge_ = sum / (3 * static_cast<double>(moving.size()));
-    cap_ = largestMove * edge_;
+    cap_ = kFarthest * edge_;
     geometry::Box all;
     std::vector<geometry::Box> reach;
     for (const std::int32_t f : moving) {
@@ -206,7 +213,7 @@ class Best {
   std::optional<Attempt> best_;
 };
 
-void descend(const Place& place, const UntangleOptions& options, Best& best) {
+void descend(const Place& place, Best& best) {
   const auto& unknown = place.unknown();
   const auto count = static_cast<Eigen::Index>(place.free().size());
   constexpr double kMass = 0.1;  // against the graph Laplacian: neighbours within 3 edges follow
@@ -224,7 +231,7 @@ void descend(const Place& place, const UntangleOptions& options, Best& best) {
 
   Positions x = place.start().positions;
   std::vector<FacePair> pairs = place.crossings(x);
-  for (int n = 0; n < options.descentSteps; ++n) {
+  for (int n = 0; n < kDescentSteps; ++n) {
     const Positions gradient = crossingLength({x, place.start().faces}, pairs).gradient;
     Eigen::MatrixXd right(count, 3);
     for (Eigen::Index i = 0; i < count; ++i) right.row(i) = -gradient.row(place.free()[i]);
@@ -254,8 +261,7 @@ void smooth(const Place& place, Best& best) {
       if (unknown[w] < 0) centres.push_back(w);
     }
   }
-  std::ranges::sort(centres);
-  centres.erase(std::unique(centres.begin(), centres.end()), centres.end());
+  centres = inOrder(std::move(centres));
   Triplets entries;
   Eigen::MatrixXd known = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(centres.size()), 3);
   for (std::size_t n = 0; n < centres.size(); ++n) {
@@ -332,11 +338,6 @@ void Untangling::noteMoves(const Positions& start) {
 
 Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
                     const Monitor& monitor) {
-  if (options.largestRings < 1 || options.largestRings > 20) {
-    throw InvalidInput("largestRings: must be from 1 to 20");
-  }
-  if (!(options.largestMove > 0)) throw InvalidInput("largestMove: must be positive");
-  if (options.descentSteps < 0) throw InvalidInput("descentSteps: must not be negative");
   if (!options.concerned.empty() &&
       static_cast<Eigen::Index>(options.concerned.size()) != mesh.faceCount()) {
     throw InvalidInput("concerned: needs one flag per face");
@@ -348,7 +349,7 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   TriangleMesh now = mesh;
   std::vector<geometry::Box> boxes = geometry::faceBoxes(now);
-  for (int rings = 1; rings <= options.largestRings && isConcerned(result.after, options.concerned);
+  for (int rings = 1; rings <= kMostRings && isConcerned(result.after, options.concerned);
        ++rings) {
     const auto groups = groupsOf(now, topology, result.after, rings);
     std::vector<bool> moved(boxes.size(), false);
@@ -359,9 +360,9 @@ Untangling untangle(const TriangleMesh& mesh, const UntangleOptions& options,
                                std::pow(2.0, rings - 1),
                        "crossings");
       if (!isConcerned(group.pairs, options.concerned)) continue;
-      const Place place(now, topology, boxes, group, options.largestMove);
+      const Place place(now, topology, boxes, group);
       Best best(place, group.pairs.size());
-      descend(place, options, best);
+      descend(place, best);
       smooth(place, best);
       if (!best.get()) continue;
       const Positions mended = drawnBack(place, *best.get());

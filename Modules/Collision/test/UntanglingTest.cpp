@@ -125,11 +125,8 @@ TEST(Untangling, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one.positions, four.positions);
 }
 
-TEST(Untangling, RefusesBadOptions) {
-  const TriangleMesh mesh = geometry::makeIcosphere(1);
-  EXPECT_THROW((void)untangle(mesh, {.largestRings = 0}), InvalidInput);
-  EXPECT_THROW((void)untangle(mesh, {.largestMove = 0}), InvalidInput);
-  EXPECT_THROW((void)untangle(mesh, {.descentSteps = -1}), InvalidInput);
+TEST(Untangling, RefusesFlagsOfAnotherSurface) {
+  EXPECT_THROW((void)untangle(geometry::makeIcosphere(1), {.concerned = {true}}), InvalidInput);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "Contacts.h"
 
+#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 
@@ -51,20 +52,16 @@ Eigen::VectorXd thinnestFaces(const TriangleMesh& mesh) {
 /// thicker.
 std::vector<std::int32_t> hairsOf(const PatchSetup& setup, const Eigen::VectorXd& thinnest) {
   const auto isThin = [&](std::int32_t v) { return thinnest[v] < kHair * setup.edge; };
-  std::vector<std::int32_t> hair(static_cast<std::size_t>(thinnest.size()), -1);
-  for (std::int32_t first = 0; first < thinnest.size(); ++first) {
-    if (hair[first] >= 0 || !isThin(first)) continue;
-    std::vector<std::int32_t> open = {first};
-    hair[first] = first;
-    while (!open.empty()) {
-      const std::int32_t v = open.back();
-      open.pop_back();
-      for (const std::int32_t beside : setup.topology.vertexVertices[v]) {
-        if (hair[beside] >= 0 || !isThin(beside)) continue;
-        hair[beside] = first;
-        open.push_back(beside);
-      }
+  DisjointSets sets(static_cast<std::size_t>(thinnest.size()));
+  for (std::int32_t v = 0; v < thinnest.size(); ++v) {
+    if (!isThin(v)) continue;
+    for (const std::int32_t beside : setup.topology.vertexVertices[v]) {
+      if (isThin(beside)) sets.join(v, beside);
     }
+  }
+  std::vector<std::int32_t> hair(static_cast<std::size_t>(thinnest.size()), -1);
+  for (std::int32_t v = 0; v < thinnest.size(); ++v) {
+    if (isThin(v)) hair[v] = sets.root(v);
   }
   return hair;
 }

@@ -151,7 +151,7 @@ bool ImplicitStep::attempt() {
     const PhaseClock clock(now_.phases.collision);
     findSafeStep(u_.contacts, state_.positions, motion);
     weldBlocking(u_.contacts, state_.positions, u_.setup.unknown, gradient_, motion);
-    onTheWay = u_.contacts.contactsOf(motion.pairs());
+    onTheWay = u_.contacts.contactsOf(collision::pairsOf(motion.meetings));
   }
   if (!(motion.descent < 0) || !search(motion, onTheWay)) return false;
   accept(motion);
@@ -224,7 +224,7 @@ void ImplicitStep::accept(Motion& motion) {
   now_.nearestContact = contacts_.empty() ? kNaN : std::sqrt(nearest(contacts_, trial_));
   state_.positions = trial_;
   state_.iteration = now_.iteration;
-  u_.contacts.remember(motion.pairs());
+  u_.contacts.remember(collision::pairsOf(motion.meetings));
   if (now_.step == 1) {
     state_.damping = std::max(kLeastDamping, state_.damping / 4);
   } else if (now_.step < 0.25 * now_.safeStep) {
@@ -251,8 +251,7 @@ void ImplicitStep::updateMultipliers() {
   const auto faces = u_.setup.patch.ofRegion();
   const double slack = u_.options.areaSlack;
   const double largest = kLargestMultiplier * std::max(1.0, state_.drive);
-  constexpr std::size_t kGrain = 1024;  // faces a task
-  parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+  parallelFor(faces.size(), [&](std::size_t f) {
     const double error = shapeOf(faces[f], state_.positions).area / faces[f].restArea - 1;
     const double excess = error - std::clamp(error, -slack, slack);
     double& multiplier = state_.multipliers[static_cast<Eigen::Index>(f)];

@@ -81,12 +81,6 @@ class Welds {
 
 }  // namespace
 
-std::vector<Pair> Motion::pairs() const {
-  std::vector<Pair> result(meetings.size());
-  for (std::size_t n = 0; n < result.size(); ++n) result[n] = meetings[n].pair;
-  return result;
-}
-
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) {
   motion.meetings = contacts.scene().findMeetings(x, motion.by, contacts.range());
   motion.safe = safeShare(contacts, motion.meetings, x, motion.by);

@@ -15,7 +15,6 @@ struct Motion {
   double descent = 0;                             ///< gradient . by
   double safe = 0;                                ///< share of it that collision detection allows
   std::vector<collision::Meeting> meetings = {};  ///< on the way, or within range of it
-  [[nodiscard]] std::vector<collision::Pair> pairs() const;
 };
 
 /// Finds `meetings` and `safe` of a motion from `x`.

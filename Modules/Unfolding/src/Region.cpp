@@ -14,8 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <set>
 #include <string>
 
 namespace explica::unfolding {
@@ -56,25 +54,98 @@ std::vector<bool> connectedWithin(const geometry::IndexLists& neighbours, std::i
   return allowed;
 }
 
-/// Loops of edges that only one of the listed faces has, joined at vertices.
-int boundaryLoops(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
-  for (const std::int32_t f : faces) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t a = mesh.faces(f, k), b = mesh.faces(f, (k + 1) % 3);
-      ++uses[{std::min(a, b), std::max(a, b)}];
+/// Loops of edges that only one face has, joined at vertices.
+int boundaryLoops(const TriangleMesh& mesh) {
+  const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
+  DisjointSets loopOf(static_cast<std::size_t>(mesh.vertexCount()));
+  std::vector<bool> onBoundary(static_cast<std::size_t>(mesh.vertexCount()), false);
+  for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
+    if (topology.edgeFaces(e, 1) >= 0) continue;
+    const std::int32_t a = topology.edges(e, 0), b = topology.edges(e, 1);
+    loopOf.join(a, b);
+    onBoundary[a] = onBoundary[b] = true;
+  }
+  int loops = 0;
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v)
+    loops += onBoundary[v] && loopOf.root(v) == v;
+  return loops;
+}
+
+/// The vertex that is asked for, or the nearest one of a face to the point.
+std::int32_t centreOf(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
+                      const RegionOptions& options) {
+  if (!options.center && !options.vertex) {
+    throw InvalidInput("region: no centre; give a centre point, a vertex or a label file");
+  }
+  if (options.center && options.vertex) {
+    throw InvalidInput("region: both a centre point and a vertex are given; give one");
+  }
+  if (options.vertex) {
+    const std::int32_t vertex = *options.vertex;
+    if (vertex < 0 || vertex >= mesh.vertexCount()) {
+      throw InvalidInput("vertex: " + std::to_string(vertex) +
+                         " is none of the surface's vertices 0 to " +
+                         std::to_string(mesh.vertexCount() - 1));
+    }
+    if (topology.vertexFaces[vertex].empty()) {
+      throw InvalidInput("vertex: " + std::to_string(vertex) + " belongs to no face");
+    }
+    return vertex;
+  }
+  if (!options.center->allFinite()) throw InvalidInput("center: not a finite point");
+  std::int32_t centre = -1;
+  double nearest = kInfinity;
+  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
+    if (topology.vertexFaces[v].empty()) continue;
+    const double squared = (mesh.positions.row(v) - options.center->transpose()).squaredNorm();
+    if (squared < nearest) {
+      nearest = squared;
+      centre = v;
     }
   }
-  DisjointSets loopOf(static_cast<std::size_t>(mesh.vertexCount()));
-  std::set<std::int32_t> onBoundary;
-  for (const auto& [edge, count] : uses) {
-    if (count != 1) continue;
-    loopOf.join(edge.first, edge.second);
-    onBoundary.insert({edge.first, edge.second});
+  requireNear(mesh, *options.center, centre);
+  return centre;
+}
+
+/// Flags of the vertices within the cone about the way from the viewpoints to the middle.
+std::vector<bool> withinCone(const TriangleMesh& mesh, const RegionOptions& options,
+                             const Point& middle, const visibility::Viewpoints* viewpoints) {
+  if (!(*options.cone > 0 && *options.cone < 90)) {
+    throw InvalidInput(printed("cone: %g degrees is not between 0 and 90", *options.cone));
   }
-  const auto loops = std::count_if(onBoundary.begin(), onBoundary.end(),
-                                   [&](std::int32_t v) { return loopOf.root(v) == v; });
-  return static_cast<int>(loops);
+  if (viewpoints == nullptr || viewpoints->points.empty()) {
+    throw InvalidInput("cone: needs a viewpoint");
+  }
+  Point eye = Point::Zero();
+  for (std::size_t k = 0; k < viewpoints->points.size(); ++k) {
+    eye += viewpoints->weights[k] * viewpoints->points[k];
+  }
+  const Vector axis = (middle - eye).normalized();
+  const double least = std::cos(*options.cone * kPi / 180);
+  std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()));
+  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
+    const Vector ray = mesh.positions.row(v).transpose() - eye;
+    // A narrow cone from afar pierces the whole surface; the radius keeps it on the near side.
+    const double beyond = std::abs((mesh.positions.row(v).transpose() - middle).dot(axis));
+    within[v] = ray.dot(axis) >= least * ray.norm() && !(beyond > options.radius);
+  }
+  return within;
+}
+
+/// Flags of the vertices within the radius of the centre.
+std::vector<bool> withinRadius(const TriangleMesh& mesh, const geometry::MeshTopology& topology,
+                               const RegionOptions& options, std::int32_t centre) {
+  if (!(options.radius > 0) || !std::isfinite(options.radius)) {
+    throw InvalidInput(printed("radius: %g mm is not a positive length", options.radius));
+  }
+  const std::array<std::int32_t, 1> source = {centre};
+  const Eigen::VectorXd distance =
+      options.metric == RegionMetric::Geodesic
+          ? geometry::geodesicDistances(mesh, topology, source, options.radius)
+          : (mesh.positions.rowwise() - mesh.positions.row(centre)).rowwise().norm();
+  std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()));
+  for (std::size_t v = 0; v < within.size(); ++v) within[v] = distance[v] <= options.radius;
+  return within;
 }
 
 }  // namespace
@@ -86,11 +157,9 @@ Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked)
                        "; they belong to another surface");
   }
   Region region;
-  std::vector<bool> used(marked.size(), false);
   for (std::int32_t f = 0; f < mesh.faceCount(); ++f) {
     if (marked[mesh.faces(f, 0)] && marked[mesh.faces(f, 1)] && marked[mesh.faces(f, 2)]) {
       region.faces.push_back(f);
-      for (int k = 0; k < 3; ++k) used[mesh.faces(f, k)] = true;
     }
   }
   if (region.faces.empty()) {
@@ -103,12 +172,10 @@ Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked)
     throw InvalidInput("region: face " + std::to_string(part.faceOrigin[f]) +
                        " has zero area, so its area cannot be kept; remesh the surface there");
   }
-  for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
-    if (used[v]) region.vertices.push_back(v);
-  }
+  region.vertices = part.vertexOrigin;
   const auto components = geometry::faceComponents(part.mesh.faces, part.mesh.vertexCount());
   region.pieces = 1 + *std::max_element(components.begin(), components.end());
-  const int loops = boundaryLoops(mesh, region.faces);
+  const int loops = boundaryLoops(part.mesh);
   if (loops == 0) {
     throw InvalidInput(
         "region: it is a whole closed surface, whose average visibility is zero from any "
@@ -120,71 +187,11 @@ Region regionOfMarked(const TriangleMesh& mesh, const std::vector<bool>& marked)
 
 Region selectRegion(const TriangleMesh& mesh, const RegionOptions& options,
                     const visibility::Viewpoints* viewpoints) {
-  if (!options.center && !options.vertex) {
-    throw InvalidInput("region: no centre; give a centre point, a vertex or a label file");
-  }
-  if (options.center && options.vertex) {
-    throw InvalidInput("region: both a centre point and a vertex are given; give one");
-  }
-  std::int32_t centre = options.vertex.value_or(-1);
-  if (options.vertex && (centre < 0 || centre >= mesh.vertexCount())) {
-    throw InvalidInput("vertex: " + std::to_string(centre) +
-                       " is none of the surface's vertices 0 to " +
-                       std::to_string(mesh.vertexCount() - 1));
-  }
-  if (options.center && !options.center->allFinite()) {
-    throw InvalidInput("center: not a finite point");
-  }
   const geometry::MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  if (options.vertex && topology.vertexFaces[centre].empty()) {
-    throw InvalidInput("vertex: " + std::to_string(centre) + " belongs to no face");
-  }
-  for (std::int32_t v = 0; !options.vertex && v < mesh.vertexCount(); ++v) {
-    if (topology.vertexFaces[v].empty()) continue;
-    const auto squared = [&](std::int32_t w) {
-      return (mesh.positions.row(w) - options.center->transpose()).squaredNorm();
-    };
-    if (centre < 0 || squared(v) < squared(centre)) centre = v;
-  }
-  const Point middle = mesh.positions.row(centre).transpose();
-  if (options.center) requireNear(mesh, *options.center, centre);
-  std::vector<bool> within(static_cast<std::size_t>(mesh.vertexCount()), false);
-  if (options.cone) {
-    if (!(*options.cone > 0 && *options.cone < 90)) {
-      throw InvalidInput(printed("cone: %g degrees is not between 0 and 90", *options.cone));
-    }
-    if (viewpoints == nullptr || viewpoints->points.empty()) {
-      throw InvalidInput("cone: needs a viewpoint");
-    }
-    Point eye = Point::Zero();
-    for (std::size_t k = 0; k < viewpoints->points.size(); ++k) {
-      eye += viewpoints->weights[k] * viewpoints->points[k];
-    }
-    const Vector axis = (middle - eye).normalized();
-    const double least = std::cos(*options.cone * kPi / 180);
-    for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-      const Vector ray = mesh.positions.row(v).transpose() - eye;
-      // A narrow cone from afar pierces the whole surface; the radius keeps it on the near side.
-      const double beyond = std::abs((mesh.positions.row(v).transpose() - middle).dot(axis));
-      within[v] = ray.dot(axis) >= least * ray.norm() && !(beyond > options.radius);
-    }
-  } else {
-    if (!(options.radius > 0) || !std::isfinite(options.radius)) {
-      throw InvalidInput(printed("radius: %g mm is not a positive length", options.radius));
-    }
-    if (options.metric == RegionMetric::Geodesic) {
-      const std::array<std::int32_t, 1> source = {centre};
-      const Eigen::VectorXd distance =
-          geometry::geodesicDistances(mesh, topology, source, options.radius);
-      for (std::size_t v = 0; v < within.size(); ++v) within[v] = distance[v] <= options.radius;
-    } else {
-      for (std::size_t v = 0; v < within.size(); ++v) {
-        within[v] =
-            (mesh.positions.row(static_cast<Eigen::Index>(v)).transpose() - middle).norm() <=
-            options.radius;
-      }
-    }
-  }
+  const std::int32_t centre = centreOf(mesh, topology, options);
+  std::vector<bool> within =
+      options.cone ? withinCone(mesh, options, mesh.positions.row(centre).transpose(), viewpoints)
+                   : withinRadius(mesh, topology, options, centre);
   within[centre] = true;
   Region region = regionOfMarked(mesh, connectedWithin(topology.vertexVertices, centre, within));
   region.centre = centre;

@@ -247,12 +247,6 @@ UnfoldResult unfoldHere(const TriangleMesh& mesh, const Region& region,
   return result;
 }
 
-Point middleOfVertices(const TriangleMesh& mesh, const Region& region) {
-  Point middle = Point::Zero();
-  for (const std::int32_t v : region.vertices) middle += mesh.positions.row(v).transpose();
-  return middle / std::max<double>(1, static_cast<double>(region.vertices.size()));
-}
-
 }  // namespace
 
 Point originNear(const Point& middle) {
@@ -285,7 +279,7 @@ UnfolderOptions solverOptions(const UnfoldOptions& options) {
 UnfoldResult unfold(const TriangleMesh& mesh, const Region& region,
                     const visibility::Viewpoints& viewpoints, const UnfoldOptions& options,
                     const Monitor& monitor, const Checkpoint* resume) {
-  const Point origin = originNear(middleOfVertices(mesh, region));
+  const Point origin = originNear(centroidOf(mesh, region));
   if (origin.isZero()) return unfoldHere(mesh, region, viewpoints, options, monitor, resume);
   TriangleMesh moved = mesh;
   moved.positions.rowwise() -= origin.transpose();

@@ -95,9 +95,8 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
                 .value(state.positions);
   double sum = 0, largest = 0;
   const auto faces = setup.patch.ofRegion();
-  constexpr std::size_t kGrain = 1024;  // faces a task
   std::vector<double> errors(faces.size());
-  parallelFor(faces.size(), kGrain, [&](std::size_t f) {
+  parallelFor(faces.size(), [&](std::size_t f) {
     errors[f] = std::abs(shapeOf(faces[f], state.positions).area / faces[f].restArea - 1);
   });
   for (const double error : errors) {

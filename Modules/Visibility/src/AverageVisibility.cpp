@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Visibility/FaceFlux.h"
 
 #include <Eigen/Geometry>
@@ -110,30 +111,22 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
 }
 
 double AverageVisibility::value(const Positions& positions) const {
-  struct Sums {
-    double flux = 0;
-    double area = 0;
-    Sums& operator+=(const Sums& other) {
-      flux += other.flux;
-      area += other.area;
-      return *this;
-    }
-  };
-  const Sums sums = parallelSum(static_cast<std::size_t>(faces_.rows()), kAverageGrain, Sums{},
-                                [&](std::size_t begin, std::size_t end) {
-                                  Sums part;
-                                  for (std::size_t i = begin; i < end; ++i) {
-                                    const Point a = positions.row(faces_(i, 0)).transpose();
-                                    const Point b = positions.row(faces_(i, 1)).transpose();
-                                    const Point c = positions.row(faces_(i, 2)).transpose();
-                                    part.flux +=
-                                        meanFlux(a, b, c, viewpoints_, options_.farRatio).flux;
-                                    part.area += (b - a).cross(c - a).norm() / 2;
-                                  }
-                                  return part;
-                                });
-  if (!(sums.area > 0)) throw InvalidInput("region: its area is zero; its visibility is undefined");
-  return sums.flux / sums.area;
+  using Sums = Eigen::Array2d;  // flux, area
+  const auto count = static_cast<std::size_t>(faces_.rows());
+  const Sums sums = parallelSum(
+      count, kAverageGrain, Sums(Sums::Zero()), [&](std::size_t begin, std::size_t end) {
+        Sums part = Sums::Zero();
+        for (std::size_t i = begin; i < end; ++i) {
+          const Point a = positions.row(faces_(i, 0)).transpose();
+          const Point b = positions.row(faces_(i, 1)).transpose();
+          const Point c = positions.row(faces_(i, 2)).transpose();
+          part += Sums(meanFlux(a, b, c, viewpoints_, options_.farRatio).flux,
+                       (b - a).cross(c - a).norm() / 2);
+        }
+        return part;
+      });
+  if (!(sums[1] > 0)) throw InvalidInput("region: its area is zero; its visibility is undefined");
+  return sums[0] / sums[1];
 }
 
 Eigen::VectorXd vertexFlux(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
@@ -147,14 +140,12 @@ Eigen::VectorXd vertexFlux(const TriangleMesh& mesh, const Viewpoints& viewpoint
                     .flux;
   });
   Eigen::VectorXd flux = Eigen::VectorXd::Zero(mesh.vertexCount());
-  Eigen::VectorXd area = Eigen::VectorXd::Zero(mesh.vertexCount());
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto f = static_cast<Eigen::Index>(i);
-    const Vector cross =
-        (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
+  Eigen::VectorXd area = flux;
+  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
+  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     for (int k = 0; k < 3; ++k) {
-      flux[mesh.faces(f, k)] += fluxes[i];
-      area[mesh.faces(f, k)] += cross.norm() / 2;
+      flux[mesh.faces(f, k)] += fluxes[f];
+      area[mesh.faces(f, k)] += areas[f];
     }
   }
   for (Eigen::Index v = 0; v < flux.size(); ++v) flux[v] = area[v] > 0 ? flux[v] / area[v] : 0;

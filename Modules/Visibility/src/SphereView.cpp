@@ -3,7 +3,7 @@
 
 #include "Explica/Visibility/SphereView.h"
 
-#include "Occluders.h"
+#include "Rays.h"
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
@@ -63,16 +63,6 @@ class FaceLook {
   std::array<double, Occluders::kPacket> fluxes_ = {};
 };
 
-void requireUsable(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
-  if (mesh.faceCount() == 0) throw InvalidInput("sphere view: the surface has no face");
-  if (viewpoints.points.empty()) {
-    throw InvalidInput("sphere view: at least one viewpoint is needed");
-  }
-  if (!mesh.positions.allFinite()) {
-    throw InvalidInput("sphere view: a vertex position is not finite");
-  }
-}
-
 }  // namespace
 
 Viewpoints viewSphere(const Point& centre, double radius, int count) {
@@ -101,12 +91,9 @@ Viewpoints enclosingSphere(const TriangleMesh& mesh, int count) {
 }
 
 SphereView lookFromSphere(const TriangleMesh& mesh, const Viewpoints& viewpoints) {
-  requireUsable(mesh, viewpoints);
-  const Point low = mesh.positions.colwise().minCoeff().transpose();
-  const Point high = mesh.positions.colwise().maxCoeff().transpose();
-  const Point centre = (low + high) / 2;
-  const double radius = (high - low).norm() / 2;
-  const Occluders occluders(mesh, centre);
+  requireInputs(mesh, viewpoints, "sphere view");
+  const Frame frame = frameOf(mesh.positions);
+  const Occluders occluders(mesh, frame.middle);
   SphereView view;
   view.direction = Positions::Zero(mesh.faceCount(), 3);
   view.share.setZero(mesh.faceCount());
@@ -120,7 +107,7 @@ SphereView lookFromSphere(const TriangleMesh& mesh, const Viewpoints& viewpoints
     if (!(areas[f] > 0)) return;
     const Vector normal = twice.normalized();
     const Point from = (a + b + c) / 3;
-    FaceLook look(occluders, i, from - centre, radius);
+    FaceLook look(occluders, i, from - frame.middle, frame.radius);
     for (std::size_t p = 0; p < viewpoints.points.size(); ++p) {
       const Vector towards = viewpoints.points[p] - from;
       const double distance = towards.norm(), flux = normal.dot(towards) / distance;

@@ -27,6 +27,9 @@ struct Meeting {
   double closing = 0;
 };
 
+/// Their pairs, in their order.
+[[nodiscard]] std::vector<Pair> pairsOf(std::span<const Meeting> meetings);
+
 /// A surface of which some vertices move, and who can meet whom in it.
 ///
 /// Every vertex-face and edge-edge pair with at least one moving vertex counts, except those that
@@ -82,11 +85,7 @@ class CollisionScene {
 };
 
 /// Largest step t in [0, limit] that brings no pair to contact; see safeTime().  Threaded.
-[[nodiscard]] double largestSafeStep(const CollisionScene& scene, std::span<const Pair> pairs,
-                                     const Positions& start, const Positions& motion,
-                                     double limit = 1, const AdvanceOptions& options = {});
-
-/// The same; meetings that hold of the same start and motion save what they know.
+/// @param meetings  of the same start and motion: what they know is saved
 [[nodiscard]] double largestSafeStep(const CollisionScene& scene, std::span<const Meeting> meetings,
                                      const Positions& start, const Positions& motion,
                                      double limit = 1, const AdvanceOptions& options = {});

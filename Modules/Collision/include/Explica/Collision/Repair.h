@@ -14,7 +14,6 @@ namespace explica::collision {
 
 struct RepairOptions {
   double maxMove = 0.75;  ///< mm that a vertex may go, > 0; groups that need more stay as they were
-  UntangleOptions untangle;
 };
 
 /// One surface of a repair.

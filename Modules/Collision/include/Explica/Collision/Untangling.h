@@ -11,11 +11,8 @@
 namespace explica::collision {
 
 struct UntangleOptions {
-  int largestRings = 5;    ///< rings of vertices about crossing faces that may move, in [1, 20]
-  double largestMove = 3;  ///< mean edge lengths of the place that a vertex goes at most, > 0
-  int descentSteps = 120;  ///< along the gradient of the crossings' length, >= 0
-  std::vector<bool> concerned =
-      {};  ///< F flags: crossings with none of these faces stay; empty: all
+  /// F flags: crossings with none of these faces stay; empty: all
+  std::vector<bool> concerned = {};
 };
 
 /// A surface with its self-intersections removed as far as that went.
@@ -44,7 +41,7 @@ struct Untangling {
 /// the piece that moved stands still, so a piece that crosses nothing is on the side where its rim
 /// is.  Moved positions are multiples of single precision, in which files keep them.
 ///
-/// @throws InvalidInput  option out of range, or as geometry::buildTopology()
+/// @throws InvalidInput  another number of flags than of faces, or as geometry::buildTopology()
 ///
 /// A stop that the monitor asks for leaves the groups that were mended by then.
 ///

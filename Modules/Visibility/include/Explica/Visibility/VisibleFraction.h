@@ -28,6 +28,8 @@ struct VisibleFraction {
   /// Mean over the area of the listed faces of what arrives.
   [[nodiscard]] double realOf(const TriangleMesh& mesh,
                               const std::vector<std::int32_t>& faces) const;
+  /// Fills `vertex` and `total` by what the faces show.
+  void addUp(const TriangleMesh& mesh);
 };
 
 /// Share of each face that is seen from the viewpoints: it faces the viewpoint, and no other face
