@@ -332,7 +332,7 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   ribbon.tissue = corrected(tissue, result.white.level);
   std::optional<TriangleMesh> placed;
   if (images) {
-    std::optional<WhiteSurface> other = withEdgesOfVoxels(result.white);
+    std::optional<WhiteSurface> other = whereImageIsAsked(result.white);
     const correspondence::Ribbon ofLabels =
         solve(annulusOf(ribbon.tissue, silent(monitor)), monitor.part(0.5, 0.6));
     placed = placeByImage(*images, options.fluid, RibbonPaths(ofLabels), std::move(other), ribbon,

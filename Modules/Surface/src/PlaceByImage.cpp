@@ -10,7 +10,6 @@
 #include "ImageBorder.h"
 #include "KeepRoom.h"
 #include "LevelOfEnds.h"
-#include "PathProfile.h"
 #include "Relaxation.h"
 
 #include <Eigen/Geometry>
@@ -25,10 +24,7 @@ namespace {
 
 /// The image makes no face of the white surface less high than this, edges.
 constexpr double kLeastHeight = 0.1;
-/// Mean edge of the mesh on which borders are looked for, voxels.  Shorter ones cost more, and move
-/// the mean thickness of a cortex by 0.01 mm for a tenth of a voxel.
-constexpr double kEdge = 1.2;
-/// By which share a mesh that serves may be coarser or finer.
+/// By which share the edges of a mesh that serves may be longer or shorter.
 constexpr double kNear = 0.1;
 
 /// Height of a triangle over its longest edge.
@@ -92,14 +88,17 @@ ImageBorders at(const Positions& points, const TriangleMesh& surface, const Imag
 
 }  // namespace
 
-std::optional<WhiteSurface> withEdgesOfVoxels(const WhiteSurface& white) {
-  const double voxel = voxelSize(white.level.grid), edge = kEdge * voxel;
-  if (std::abs(meanEdge(white.mesh) - edge) <= kNear * edge) return {};
+std::optional<WhiteSurface> whereImageIsAsked(const WhiteSurface& white) {
   const TriangleMesh raw = geometry::extractIsoSurface(white.level);
-  const double equilateral = std::sqrt(3.0) / 4 * edge * edge;
+  const double voxel = voxelSize(white.level.grid), area = geometry::totalArea(raw);
+  const auto edgeOf = [&](double faces) { return std::sqrt(4 / std::sqrt(3.0) * area / faces); };
   RemeshOptions remeshing;
-  remeshing.faces =
-      std::max(kFewestFaces, static_cast<std::int64_t>(geometry::totalArea(raw) / equilateral));
+  remeshing.faces = SurfaceOptions().faces;
+  const double usual = edgeOf(static_cast<double>(remeshing.faces)), edge = std::max(voxel, usual);
+  const double own = edgeOf(static_cast<double>(white.mesh.faceCount()));
+  if (std::abs(own - edge) <= kNear * edge) return {};
+  remeshing.faces = std::max(
+      kFewestFaces, static_cast<std::int64_t>(remeshing.faces * (usual * usual) / (edge * edge)));
   RemeshResult made = remesh(raw, white.level, remeshing);
   WhiteSurface other;
   other.level.grid = white.level.grid;
