@@ -10,6 +10,7 @@
 #include "ImageBorder.h"
 #include "KeepRoom.h"
 #include "LevelOfEnds.h"
+#include "PathProfile.h"
 #include "Relaxation.h"
 
 #include <Eigen/Geometry>
@@ -24,6 +25,7 @@ namespace {
 
 /// The image makes no face of the white surface less high than this, edges.
 constexpr double kLeastHeight = 0.1;
+const std::int64_t kUsualFaces = SurfaceOptions().faces;
 /// By which share the edges of a mesh that serves may be longer or shorter.
 constexpr double kNear = 0.1;
 
@@ -89,16 +91,15 @@ ImageBorders at(const Positions& points, const TriangleMesh& surface, const Imag
 }  // namespace
 
 std::optional<WhiteSurface> whereImageIsAsked(const WhiteSurface& white) {
+  const double voxel = voxelSize(white.level.grid);
+  const double area = geometry::totalArea(white.mesh), usual = edgeFor(area, kUsualFaces);
+  const double own = edgeFor(area, white.mesh.faceCount());
+  if (std::abs(own / std::max(voxel, usual) - 1) <= kNear) return {};
   const TriangleMesh raw = geometry::extractIsoSurface(white.level);
-  const double voxel = voxelSize(white.level.grid), area = geometry::totalArea(raw);
-  const auto edgeOf = [&](double faces) { return std::sqrt(4 / std::sqrt(3.0) * area / faces); };
+  const double voxels = geometry::totalArea(raw) / (voxel * voxel);
+  const double shortest = 4 / std::sqrt(3.0) * voxels;  // faces whose edges are a voxel
   RemeshOptions remeshing;
-  remeshing.faces = SurfaceOptions().faces;
-  const double usual = edgeOf(static_cast<double>(remeshing.faces)), edge = std::max(voxel, usual);
-  const double own = edgeOf(static_cast<double>(white.mesh.faceCount()));
-  if (std::abs(own - edge) <= kNear * edge) return {};
-  remeshing.faces = std::max(
-      kFewestFaces, static_cast<std::int64_t>(remeshing.faces * (usual * usual) / (edge * edge)));
+  remeshing.faces = std::clamp(static_cast<std::int64_t>(shortest), kFewestFaces, kUsualFaces);
   RemeshResult made = remesh(raw, white.level, remeshing);
   WhiteSurface other;
   other.level.grid = white.level.grid;

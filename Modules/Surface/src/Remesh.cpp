@@ -235,10 +235,6 @@ class Remesher {
   std::int64_t refused_ = 0;
 };
 
-double edgeFor(double area, std::int64_t faces) {
-  return std::sqrt(4 / std::sqrt(3.0) * area / static_cast<double>(faces));
-}
-
 /// What was asked for, to the next even number, but no more than the volume can tell.
 std::int64_t facesWanted(const RemeshOptions& options, double area, double voxel,
                          const Monitor& monitor) {
@@ -255,6 +251,10 @@ std::int64_t facesWanted(const RemeshOptions& options, double area, double voxel
 }
 
 }  // namespace
+
+double edgeFor(double area, std::int64_t faces) {
+  return std::sqrt(4 / std::sqrt(3.0) * area / static_cast<double>(faces));
+}
 
 RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const RemeshOptions& options,
                     const Monitor& monitor) {

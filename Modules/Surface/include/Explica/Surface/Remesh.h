@@ -13,6 +13,9 @@ namespace explica::surface {
 /// Below them no shape is kept.
 inline constexpr std::int64_t kFewestFaces = 100;
 
+/// Edge of as many equilateral triangles as cover an area, mm.
+[[nodiscard]] double edgeFor(double area, std::int64_t faces);
+
 /// How a surface gets triangles of nearly equal shape and size.
 struct RemeshOptions {
   std::int64_t faces = 150000;  ///< wanted; met exactly (to the next even number) where
