@@ -21,7 +21,8 @@ HWY_INLINE std::uint64_t bitsOf(D d, M mask) {
   return bytes[0];
 }
 
-std::uint64_t MayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach) {
+template <bool kStill>
+HWY_INLINE std::uint64_t NearLanes(const BoundsBlock& a, const BoundsBlock& b, float squaredReach) {
   const BoundsTag d;
   const int width = static_cast<int>(hn::Lanes(d));
   const auto zero = hn::Zero(d);
@@ -30,12 +31,15 @@ std::uint64_t MayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredR
     for (int n = 0; n < BoundsBlock::kLanes; n += width) {
       auto squared = zero;
       for (int k = 0; k < 3; ++k) {
-        const auto above = hn::Sub(hn::Set(d, a.lower[k][lane]), hn::Load(d, b.upper[k] + n));
-        const auto falls = hn::Sub(hn::Load(d, b.most[k] + n), hn::Set(d, a.least[k][lane]));
-        const auto below = hn::Sub(hn::Load(d, b.lower[k] + n), hn::Set(d, a.upper[k][lane]));
-        const auto rises = hn::Sub(hn::Set(d, a.most[k][lane]), hn::Load(d, b.least[k] + n));
-        const auto gap = hn::Max(zero, hn::Max(hn::Sub(above, hn::Max(zero, falls)),
-                                               hn::Sub(below, hn::Max(zero, rises))));
+        auto above = hn::Sub(hn::Set(d, a.lower[k][lane]), hn::Load(d, b.upper[k] + n));
+        auto below = hn::Sub(hn::Load(d, b.lower[k] + n), hn::Set(d, a.upper[k][lane]));
+        if constexpr (!kStill) {
+          const auto falls = hn::Sub(hn::Load(d, b.most[k] + n), hn::Set(d, a.least[k][lane]));
+          const auto rises = hn::Sub(hn::Set(d, a.most[k][lane]), hn::Load(d, b.least[k] + n));
+          above = hn::Sub(above, hn::Max(zero, falls));
+          below = hn::Sub(below, hn::Max(zero, rises));
+        }
+        const auto gap = hn::Max(zero, hn::Max(above, below));
         squared = hn::Add(squared, hn::Mul(gap, gap));
       }
       bits |= bitsOf(d, hn::Le(squared, hn::Set(d, squaredReach)))
@@ -43,6 +47,10 @@ std::uint64_t MayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredR
     }
   }
   return bits;
+}
+
+std::uint64_t MayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach, bool still) {
+  return still ? NearLanes<true>(a, b, squaredReach) : NearLanes<false>(a, b, squaredReach);
 }
 
 }  // namespace explica::geometry::HWY_NAMESPACE
@@ -53,8 +61,8 @@ namespace explica::geometry {
 
 HWY_EXPORT(MayMeet);
 
-std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach) {
-  return HWY_DYNAMIC_DISPATCH(MayMeet)(a, b, squaredReach);
+std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach, bool still) {
+  return HWY_DYNAMIC_DISPATCH(MayMeet)(a, b, squaredReach, still);
 }
 
 }  // namespace explica::geometry

@@ -154,6 +154,11 @@ BoundsPyramid::BoundsPyramid(std::span<const MotionBounds> items) : items_(items
     const std::vector<BoundsBlock>& below = levels_.back();
     levels_.push_back(fill(below.size(), [&](std::size_t n) { return boundsOf(below[n]); }));
   }
+  const MotionBounds all = boundsOf(levels_.back().front());
+  const MotionBounds still = MotionBounds::ofPoint(Vector::Zero(), Vector::Zero());
+  for (int k = 0; k < 3; ++k) {
+    isStill_ = isStill_ && all.least[k] >= still.least[k] && all.most[k] <= still.most[k];
+  }
 }
 
 }  // namespace explica::geometry

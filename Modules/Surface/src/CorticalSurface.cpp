@@ -193,15 +193,18 @@ void noteHeldBack(const GrowingColumns& ribbon, const LevelSet& outer, const Gro
 
 /// Takes vertices that slid along their surface, and with it off the outer boundary, towards it
 /// again, a voxel at most.
+/// @param rest  the ways from where each vertex was the last time: nothing is new on one that it
+///              is still at the start of
 void growAgain(const GrowingColumns& ribbon, const RibbonPaths& along,
-               const geometry::FaceTree& white, TriangleMesh& pial) {
+               const geometry::FaceTree& white, std::vector<Trajectory>& rest, TriangleMesh& pial) {
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white.mesh());
   const double gap = middleGap(ribbon.tissue.white.grid);
   const double voxel = voxelSize(ribbon.tissue.white.grid);
-  std::vector<Trajectory> rest(ribbon.paths.size());
+  rest.resize(ribbon.paths.size());
   parallelFor(rest.size(), 256, [&](std::size_t v) {
     const auto row = static_cast<Eigen::Index>(v);
     const Point start = pial.positions.row(row);
+    if (!rest[v].points.empty() && rest[v].points.front() == start) return;
     rest[v] = RibbonPaths::none(start);
     if (ribbon.paths[v].end == TrajectoryEnd::NoRibbon) return;
     const Trajectory path = along.from(start, 1);
@@ -248,10 +251,11 @@ void growSurfaces(const GrowingColumns& ribbon, const RibbonPaths& along, Cortic
   };
   const geometry::FaceTree white(result.white.mesh);
   result.pial = growth.mesh();
+  std::vector<Trajectory> rest;
   for (const int sweeps : kRelaxations) {
     relaxation.sweeps = sweeps;
     result.pial = relaxed(result.pial, edge, moves, ontoBorder, relaxation);
-    growAgain(ribbon, along, white, result.pial);
+    growAgain(ribbon, along, white, rest, result.pial);
     relaxation.bend = 0;  // what has been evened only slides
   }
   RelaxationOptions mending;

@@ -33,6 +33,7 @@ double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel,
     return std::sqrt(nearest.squaredDistance);
   };
   const double window = kWindow * voxel, length = path.length();
+  if (length - first < 0.5 * window) return length;
   const double last = distanceAt(length), gained = last - distanceAt(0);
   if (length - gained < 0.5 * (1 - kRate) * window) return length;  // what it need not look at
   // Window k goes from place k to place k + 2.

@@ -98,19 +98,22 @@ std::vector<std::int32_t> withinTwoEdges(std::size_t vertex,
 }
 
 VertexRows averaged(VertexRows values, const geometry::MeshTopology& topology, int times) {
+  const auto columns = static_cast<std::size_t>(values.cols());
   VertexRows next(values.rows(), values.cols());
   for (int pass = 0; pass < times; ++pass) {
     parallelFor(topology.vertexVertices.size(), 1024, [&](std::size_t v) {
-      const auto row = static_cast<Eigen::Index>(v);
-      next.row(row) = values.row(row);
-      if (!std::isfinite(values(row, 0))) return;
+      const double* const own = values.data() + v * columns;
+      double* const mean = next.data() + v * columns;
+      std::copy(own, own + columns, mean);
+      if (!std::isfinite(own[0])) return;
       int count = 1;
       for (const std::int32_t w : topology.vertexVertices[v]) {
-        if (!std::isfinite(values(w, 0))) continue;
-        next.row(row) += values.row(w);
+        const double* const other = values.data() + w * columns;
+        if (!std::isfinite(other[0])) continue;
+        for (std::size_t c = 0; c < columns; ++c) mean[c] += other[c];
         ++count;
       }
-      next.row(row) /= count;
+      for (std::size_t c = 0; c < columns; ++c) mean[c] /= count;
     });
     std::swap(values, next);
   }

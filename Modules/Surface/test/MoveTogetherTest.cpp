@@ -3,6 +3,8 @@
 
 #include "../src/MoveTogether.h"
 
+#include "../src/GuardedMesh.h"
+
 #include "Explica/Geometry/SelfIntersection.h"
 
 #include <gtest/gtest.h>
@@ -63,6 +65,18 @@ TEST(MoveTogether, WhatWouldMeetTakesTheNextAttemptOrStays) {
   EXPECT_EQ(attempt[n * n - 1], 0);
   EXPECT_EQ(mesh.positions(n * n - 1, 2), 0.5);
   EXPECT_EQ(mesh.positions.bottomRows(n * n), before.positions.bottomRows(n * n));
+}
+
+TEST(MoveTogether, AStepOfOneVertexAfterwardsSeesWhereAllAre) {
+  constexpr int n = 12, upper = n * n + n * n / 2 + n / 2;
+  const Point deep(n / 2, n / 2 + 0.25, 0.5);
+  GuardedMesh mesh(twoSheets(n), 1);
+  ASSERT_TRUE(mesh.move(upper, deep));
+  ASSERT_TRUE(mesh.move(upper, twoSheets(n).positions.row(upper)));
+  ASSERT_EQ(mesh.moveTogether(lowerSheet(n), 1,
+                              [](std::int32_t v, int) { return Point(v % n, v / n, 0.75); }),
+            0);
+  EXPECT_FALSE(mesh.move(upper, deep));
 }
 
 }  // namespace

@@ -39,17 +39,22 @@ class BoundsPyramid {
   [[nodiscard]] const BoundsBlock& block(int level, std::int32_t n) const {
     return levels_[level][n];
   }
+  /// True if nothing moves.
+  [[nodiscard]] bool isStill() const { return isStill_; }
   /// Item in a lane of level 0, counted through its blocks.
   [[nodiscard]] std::int32_t item(std::int32_t place) const { return items_[place]; }
 
  private:
   std::vector<std::vector<BoundsBlock>> levels_;
   std::vector<std::int32_t> items_;
+  bool isStill_ = true;
 };
 
 /// Which lanes of a come within reach of which lanes of b (bit 8 i + j) at some time of their
 /// motion: along each axis the gap at the start less what the motions may take of it, and the three
 /// together. Vectorised, with the same bits on every processor.
-[[nodiscard]] std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach);
+/// @param still  nothing moves in either
+[[nodiscard]] std::uint64_t mayMeet(const BoundsBlock& a, const BoundsBlock& b, float squaredReach,
+                                    bool still);
 
 }  // namespace explica::geometry

@@ -30,7 +30,8 @@ template <class Visit>
 void visitLanes(const BoundsSearch& search, const BlockPair& pair, const Visit& visit) {
   std::uint64_t near =
       mayMeet(search.first->block(pair.firstLevel, pair.first),
-              search.second->block(pair.secondLevel, pair.second), search.squaredReach);
+              search.second->block(pair.secondLevel, pair.second), search.squaredReach,
+              search.first->isStill() && search.second->isStill());
   if (search.same() && pair.firstLevel == pair.secondLevel && pair.first == pair.second) {
     constexpr std::uint64_t kNotBelow = 0x80C0E0F0F8FCFEFFU;  // j >= i of bits 8 i + j
     constexpr std::uint64_t kItself = 0x8040201008040201U;
