@@ -17,6 +17,9 @@ constexpr double kRoundUp = 1 + 1e-12;  // covers the few roundings in sums and 
 /// Share of the provably free time that one advance uses, as in [Li2021].
 constexpr double kAdvanceShare = 0.9;
 
+/// Of a pair; what is reached by then is returned.
+constexpr int kMostAdvances = 200;
+
 /// Of the limit: below it further advances of a pair that closes do not matter.
 constexpr double kSmallAdvance = 1e-6;
 
@@ -136,7 +139,7 @@ double safeTime(PairKind kind, const FourPoints& x, const FourPoints& motion, do
     }
     return 0.0;
   };
-  for (int n = 0; n < options.maxAdvances; ++n) {
+  for (int n = 0; n < kMostAdvances; ++n) {
     const double straight = kAdvanceShare * freeTime(now, distance);
     if (time + straight >= limit) return limit;
     const double next = time + std::max(straight, turningTime(straight));

@@ -101,7 +101,6 @@ Contacts::Contacts(const PatchSetup& setup, const UnfolderOptions& options)
     : start_(setup.mesh.positions), range_(options.contactRange * setup.edge) {
   standAt(setup, start_);
   near_ = scene_->findPairs(start_, Positions::Zero(start_.rows(), 3), range_);
-  nearKnown_ = true;
   findRanges(setup, options.method != Method::Implicit);
 }
 
@@ -118,7 +117,7 @@ void Contacts::standAt(const PatchSetup& setup, const Positions& positions) {
 void Contacts::findRanges(const PatchSetup& setup, bool mayTouch) {
   const Eigen::VectorXd thinnest = thinnestFaces(setup.mesh);
   const std::vector<std::int32_t> hair = hairsOf(setup, thinnest);
-  for (const Pair& pair : near_) {
+  for (const Pair& pair : *near_) {
     const double distance =
         std::sqrt(collision::squaredDistance(pair.kind, scene_->points(pair, start_)));
     const auto v = scene_->vertices(pair);
@@ -166,13 +165,8 @@ std::vector<Contact> Contacts::contactsOf(const std::vector<Pair>& pairs) const 
 }
 
 std::vector<Contact> Contacts::within(const Positions& x) {
-  if (!nearKnown_) remember(scene_->findPairs(x, Positions::Zero(x.rows(), 3), range_));
-  return collision::contactsWithin(contactsOf(near_), x);
-}
-
-void Contacts::remember(std::vector<Pair> pairs) {
-  near_ = std::move(pairs);
-  nearKnown_ = true;
+  if (!near_) near_ = scene_->findPairs(x, Positions::Zero(x.rows(), 3), range_);
+  return collision::contactsWithin(contactsOf(*near_), x);
 }
 
 }  // namespace explica::unfolding

@@ -8,6 +8,7 @@
 #include "Explica/Collision/ContactPotential.h"
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,9 +40,9 @@ class Contacts {
 
   /// Tells all pairs that may be within range at the positions of the next call of within(),
   /// ascending.
-  void remember(std::vector<collision::Pair> pairs);
+  void remember(std::vector<collision::Pair> pairs) { near_ = std::move(pairs); }
   /// Makes the next call of within() search.
-  void forget() { nearKnown_ = false; }
+  void forget() { near_.reset(); }
 
  private:
   void findRanges(const PatchSetup& setup, bool mayTouch);
@@ -53,8 +54,7 @@ class Contacts {
   std::unique_ptr<collision::CollisionScene> scene_;
   /// Of pairs nearer at the start than range_, ascending.
   std::vector<std::pair<collision::Pair, double>> ranges_;
-  std::vector<collision::Pair> near_;
-  bool nearKnown_ = false;
+  std::optional<std::vector<collision::Pair>> near_;
 };
 
 /// Squared distance of a contact's features, mm^2.

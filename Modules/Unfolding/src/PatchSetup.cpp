@@ -170,7 +170,6 @@ void listCouplings(PatchSetup& s) {
     const std::int32_t a = s.unknown[spring.vertices[0]], b = s.unknown[spring.vertices[1]];
     if (a >= 0 && b >= 0) s.couplings.emplace_back(std::max(a, b), std::min(a, b));
   }
-  std::sort(s.couplings.begin(), s.couplings.end());
 }
 
 /// A large region alone finds no way of its own past the parts of its rim that come to lie over one

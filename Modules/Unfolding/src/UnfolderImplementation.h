@@ -3,8 +3,8 @@
 #pragma once
 
 #include "Contacts.h"
-#include "Objective.h"
 #include "PatchSetup.h"
+#include "energies/Energy.h"
 
 #include "Explica/Unfolding/Unfolder.h"
 

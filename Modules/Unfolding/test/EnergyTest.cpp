@@ -3,8 +3,8 @@
 
 #include "../src/AreaProjection.h"
 #include "../src/Around.h"
-#include "../src/Objective.h"
 #include "../src/Room.h"
+#include "../src/energies/Energy.h"
 
 #include "Meander.h"
 

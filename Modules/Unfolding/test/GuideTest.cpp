@@ -6,6 +6,7 @@
 #include "../src/Room.h"
 #include "Meander.h"
 
+#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Unfold.h"

@@ -6,6 +6,7 @@
 #include "Meander.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Testing/Meshes.h"
 #include "Explica/Unfolding/Distortion.h"
 

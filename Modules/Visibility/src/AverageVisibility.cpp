@@ -26,20 +26,35 @@ void requireViewpoints(const Viewpoints& viewpoints) {
   }
 }
 
-bool isFar(const Point& a, const Point& b, const Point& c, const Point& viewpoint, double ratio) {
-  const double squaredEdge =
-      std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return ((a + b + c) / 3 - viewpoint).squaredNorm() > ratio * ratio * squaredEdge;
+using FaceCorners = std::array<Point, 3>;
+
+FaceCorners cornersOf(const Positions& positions, const Faces& faces, Eigen::Index face) {
+  return {positions.row(faces(face, 0)).transpose(), positions.row(faces(face, 1)).transpose(),
+          positions.row(faces(face, 2)).transpose()};
+}
+
+Vector twiceAreaVector(const FaceCorners& at) {
+  return (at[1] - at[0]).cross(at[2] - at[0]);
+}
+
+/// Distance of the viewpoint from a face's centroid, in longest edges of that face, from which the
+/// three-point rule replaces the closed form: both then err by about 1e-9 of the flux.
+constexpr double kFarRatio = 300;
+
+bool isFar(const FaceCorners& at, const Point& viewpoint) {
+  const double squaredEdge = std::max({(at[1] - at[0]).squaredNorm(), (at[2] - at[1]).squaredNorm(),
+                                       (at[0] - at[2]).squaredNorm()});
+  return ((at[0] + at[1] + at[2]) / 3 - viewpoint).squaredNorm() >
+         kFarRatio * kFarRatio * squaredEdge;
 }
 
 /// Flux of a face, averaged over the viewpoints.
-FaceFlux meanFlux(const Point& a, const Point& b, const Point& c, const Viewpoints& viewpoints,
-                  double farRatio) {
+FaceFlux meanFlux(const FaceCorners& at, const Viewpoints& viewpoints) {
   FaceFlux sum{.gradient = {Vector::Zero(), Vector::Zero(), Vector::Zero()}};
   for (std::size_t p = 0; p < viewpoints.points.size(); ++p) {
     const Point& from = viewpoints.points[p];
-    const FaceFlux one =
-        isFar(a, b, c, from, farRatio) ? faceFluxFar(a, b, c, from) : faceFlux(a, b, c, from);
+    const FaceFlux one = isFar(at, from) ? faceFluxFar(at[0], at[1], at[2], from)
+                                         : faceFlux(at[0], at[1], at[2], from);
     sum.flux += viewpoints.weights[p] * one.flux;
     for (int k = 0; k < 3; ++k) sum.gradient[k] += viewpoints.weights[p] * one.gradient[k];
   }
@@ -48,23 +63,20 @@ FaceFlux meanFlux(const Point& a, const Point& b, const Point& c, const Viewpoin
 
 }  // namespace
 
-AverageVisibility::AverageVisibility(const Faces& faces, std::vector<std::int32_t> regionFaces,
-                                     Viewpoints viewpoints, const AverageVisibilityOptions& options)
-    : faces_(static_cast<Eigen::Index>(regionFaces.size()), 3),
-      regionFaces_(std::move(regionFaces)),
-      viewpoints_(std::move(viewpoints)),
-      options_(options) {
-  if (regionFaces_.empty()) {
+AverageVisibility::AverageVisibility(const Faces& faces,
+                                     const std::vector<std::int32_t>& regionFaces,
+                                     Viewpoints viewpoints)
+    : faces_(static_cast<Eigen::Index>(regionFaces.size()), 3), viewpoints_(std::move(viewpoints)) {
+  if (regionFaces.empty()) {
     throw InvalidInput("region: it has no face; choose a larger radius or another centre");
   }
   requireViewpoints(viewpoints_);
-  if (!(options_.farRatio > 0)) throw InvalidInput("far ratio: must be greater than 0");
-  for (std::size_t i = 0; i < regionFaces_.size(); ++i) {
-    if (regionFaces_[i] < 0 || regionFaces_[i] >= faces.rows()) {
-      throw InvalidInput("region: face " + std::to_string(regionFaces_[i]) +
+  for (std::size_t i = 0; i < regionFaces.size(); ++i) {
+    if (regionFaces[i] < 0 || regionFaces[i] >= faces.rows()) {
+      throw InvalidInput("region: face " + std::to_string(regionFaces[i]) +
                          " does not exist; the surface has " + std::to_string(faces.rows()));
     }
-    faces_.row(i) = faces.row(regionFaces_[i]);
+    faces_.row(i) = faces.row(regionFaces[i]);
   }
 }
 
@@ -73,11 +85,9 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
   std::vector<FaceFlux> fluxes(count);
   Eigen::VectorXd areas(faces_.rows());
   parallelFor(count, kAverageGrain, [&](std::size_t i) {
-    const Point a = positions.row(faces_(i, 0)).transpose();
-    const Point b = positions.row(faces_(i, 1)).transpose();
-    const Point c = positions.row(faces_(i, 2)).transpose();
-    fluxes[i] = meanFlux(a, b, c, viewpoints_, options_.farRatio);
-    areas[i] = (b - a).cross(c - a).norm() / 2;
+    const FaceCorners at = cornersOf(positions, faces_, static_cast<Eigen::Index>(i));
+    fluxes[i] = meanFlux(at, viewpoints_);
+    areas[i] = twiceAreaVector(at).norm() / 2;
   });
 
   VisibilityValue result;
@@ -95,12 +105,10 @@ VisibilityValue AverageVisibility::evaluate(const Positions& positions) const {
 
   result.gradient.setZero(positions.rows(), 3);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::array<Point, 3> corner = {positions.row(faces_(i, 0)).transpose(),
-                                         positions.row(faces_(i, 1)).transpose(),
-                                         positions.row(faces_(i, 2)).transpose()};
+    const FaceCorners corner = cornersOf(positions, faces_, static_cast<Eigen::Index>(i));
     const double area = areas[i];
     Vector normal = Vector::Zero();
-    if (area > 0) normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]) / (2 * area);
+    if (area > 0) normal = twiceAreaVector(corner) / (2 * area);
     for (int k = 0; k < 3; ++k) {
       const Vector areaGradient = normal.cross(corner[(k + 2) % 3] - corner[(k + 1) % 3]) / 2;
       result.gradient.row(faces_(i, k)) +=
@@ -117,11 +125,8 @@ double AverageVisibility::value(const Positions& positions) const {
       count, kAverageGrain, Sums(Sums::Zero()), [&](std::size_t begin, std::size_t end) {
         Sums part = Sums::Zero();
         for (std::size_t i = begin; i < end; ++i) {
-          const Point a = positions.row(faces_(i, 0)).transpose();
-          const Point b = positions.row(faces_(i, 1)).transpose();
-          const Point c = positions.row(faces_(i, 2)).transpose();
-          part += Sums(meanFlux(a, b, c, viewpoints_, options_.farRatio).flux,
-                       (b - a).cross(c - a).norm() / 2);
+          const FaceCorners at = cornersOf(positions, faces_, static_cast<Eigen::Index>(i));
+          part += Sums(meanFlux(at, viewpoints_).flux, twiceAreaVector(at).norm() / 2);
         }
         return part;
       });
@@ -134,10 +139,8 @@ Eigen::VectorXd vertexFlux(const TriangleMesh& mesh, const Viewpoints& viewpoint
   const auto count = static_cast<std::size_t>(mesh.faceCount());
   std::vector<double> fluxes(count);
   parallelFor(count, kAverageGrain, [&](std::size_t i) {
-    const auto f = static_cast<Eigen::Index>(i);
-    fluxes[i] = meanFlux(mesh.corner(f, 0), mesh.corner(f, 1), mesh.corner(f, 2), viewpoints,
-                         AverageVisibilityOptions{}.farRatio)
-                    .flux;
+    const FaceCorners at = cornersOf(mesh.positions, mesh.faces, static_cast<Eigen::Index>(i));
+    fluxes[i] = meanFlux(at, viewpoints).flux;
   });
   Eigen::VectorXd flux = Eigen::VectorXd::Zero(mesh.vertexCount());
   Eigen::VectorXd area = flux;

@@ -69,6 +69,26 @@ using Terms = std::array<std::unique_ptr<Energy>, kTermCount>;
 void makeFaceTerms(Terms& terms);   ///< sums over faces
 void makeOtherTerms(Terms& terms);  ///< of edges, vertices and pairs
 
+/// The sum of all terms.
+class Objective {
+ public:
+  Objective();
+
+  /// @param account  gets the value of every term, and the time spent
+  /// @return their sum, mm^2
+  double value(const Configuration& now, const TermValues& strengths,
+               IterationRecord& account) const;
+  /// V x 3.
+  [[nodiscard]] Positions gradient(const Configuration& now, const TermValues& strengths,
+                                   IterationRecord& account) const;
+  /// Adds a positive semi-definite part of the Hessian.
+  void addStiffness(const Configuration& now, const TermValues& strengths,
+                    const std::vector<std::int32_t>& unknown, BlockSystem& system) const;
+
+ private:
+  Terms terms_;
+};
+
 /// Of a radius: a pull to a height or a place grows with the way there as far as this, and no more,
 /// so that nothing is dragged through the rest before that has made way.
 inline constexpr double kFirm = 0.03;

@@ -10,17 +10,15 @@ namespace explica::collision {
 
 /// How near a pair may come on its way.
 struct AdvanceOptions {
-  double keptShare = 0.1;   ///< of the pair's distance at the start, in (0, 1)
-  int maxAdvances = 200;    ///< conservative advances per pair; what is reached by then is returned
   double keptDistance = 0;  ///< mm: a pair keeps it, or four fifths of its distance if that is less
   double leastDistance = 0;  ///< mm: a pair that is farther apart stays so, step after step
 
   /// What a pair keeps of its distance at the start, mm.
   [[nodiscard]] double gap(double start) const {
-    constexpr double kNearShare = 0.8;
+    constexpr double kKeptShare = 0.1, kNearShare = 0.8;
     // Pairs halt before it: distances are rounded down, and what that gives away adds up.
     constexpr double kHalt = 3, kCreep = 1e-4;
-    const double kept = std::max(keptShare * start, std::min(kNearShare * start, keptDistance));
+    const double kept = std::max(kKeptShare * start, std::min(kNearShare * start, keptDistance));
     if (!(start > leastDistance)) return kept;
     return std::max(kept,
                     std::min(kHalt * leastDistance, start - kCreep * (start - leastDistance)));

@@ -9,12 +9,6 @@
 
 namespace explica::visibility {
 
-struct AverageVisibilityOptions {
-  /// Distance of the viewpoint from a face's centroid, in longest edges of that face, from which
-  /// the three-point rule replaces the closed form: both then err by about 1e-9 of the flux.
-  double farRatio = 300;
-};
-
 /// Average visibility of a region and how it changes with the vertices.
 struct VisibilityValue {
   double value = 0;          ///< in [-1, 1]: total flux over total area
@@ -33,23 +27,18 @@ class AverageVisibility {
  public:
   /// @param faces        F x 3 of the whole surface
   /// @param regionFaces  rows of `faces`
-  /// @throws InvalidInput  empty region, face out of range, no viewpoint, option out of range
-  AverageVisibility(const Faces& faces, std::vector<std::int32_t> regionFaces,
-                    Viewpoints viewpoints, const AverageVisibilityOptions& options = {});
+  /// @throws InvalidInput  empty region, face out of range, or no viewpoint
+  AverageVisibility(const Faces& faces, const std::vector<std::int32_t>& regionFaces,
+                    Viewpoints viewpoints);
 
   /// @param positions  V x 3
   [[nodiscard]] VisibilityValue evaluate(const Positions& positions) const;
   /// Value alone, without the gradient.
   [[nodiscard]] double value(const Positions& positions) const;
 
-  [[nodiscard]] const std::vector<std::int32_t>& regionFaces() const { return regionFaces_; }
-  [[nodiscard]] const Viewpoints& viewpoints() const { return viewpoints_; }
-
  private:
   Faces faces_;  ///< R x 3: of the region only
-  std::vector<std::int32_t> regionFaces_;
   Viewpoints viewpoints_;
-  AverageVisibilityOptions options_;
 };
 
 /// Mean flux at each vertex: of its faces, by area; in [-1, 1], zero at vertices of no face.
