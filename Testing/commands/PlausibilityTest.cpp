@@ -155,9 +155,6 @@ TEST(PlausibilityCommand, AnUnknownNameToAcceptIsAUsageError) {
   const auto result = segment(folder, "t1.nii.gz", {"--accept", "volume"});
   EXPECT_EQ(result.exitCode, 1) << result;
   EXPECT_NE(result.err.find("brain-volume"), std::string::npos) << result;
-  const auto gone = segment(folder, "t1.nii.gz", {"--accept", "mask-edge"});
-  EXPECT_EQ(gone.exitCode, 1) << gone;
-  EXPECT_NE(gone.err.find("--accept mask-edge is gone"), std::string::npos) << gone;
 }
 
 TEST(PlausibilityCommand, InvertedContrastIsRefused) {

@@ -3,7 +3,6 @@
 
 #include "Parse.h"
 
-#include "FormerOptions.h"
 #include "Meeting.h"
 #include "Wording.h"
 
@@ -130,7 +129,7 @@ std::vector<Parameter> commonParameters(const Declaration& declaration, CommonOp
 }
 
 std::set<std::string> applyJson(std::vector<Parameter*> parameters, const provenance::Json& values,
-                                const std::string& source, const std::string& command) {
+                                const std::string& source) {
   if (!values.is_object()) throw UsageError(source + ": must hold one JSON object");
   const provenance::Json flat = provenance::flattenKeys(values);
   std::set<std::string> names;
@@ -142,9 +141,6 @@ std::set<std::string> applyJson(std::vector<Parameter*> parameters, const proven
     if (found == parameters.end()) {
       std::vector<std::string> known;
       for (const Parameter* p : parameters) known.push_back(p->option.name);
-      if (const auto former = whatBecameOf(key, command, known, ""); !former.empty()) {
-        throw UsageError(source + ": option " + former);
-      }
       const std::string near = nearestWord(key, known);
       throw UsageError(source + ": unknown option '" + key + "'" +
                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
@@ -198,7 +194,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
   } catch (const CLI::ExtrasError&) {
     std::vector<std::string> known;
     for (const Parameter* p : all) {
-      if (!p->positional) known.push_back(p->option.name);
+      if (!p->positional) known.push_back("--" + p->option.name);
     }
     const std::string extra = parser.remaining().empty() ? "" : parser.remaining().front();
     const std::string word = extra.substr(0, extra.find('='));
@@ -208,10 +204,6 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
     if (word == "--out" && declaration.fallbackOut) {
       throw UsageError("--out is not an option of this command: OUT_DIR says where the results go");
     }
-    const std::string name = word.substr(std::min(word.size(), std::size_t{2}));
-    const auto former = whatBecameOf(name, declaration.name, known, "--");
-    if (!former.empty()) throw UsageError(former);
-    for (std::string& option : known) option.insert(0, "--");
     const std::string near = nearestWord(word, known);
     throw UsageError("unknown option " + word +
                      (near.empty() ? "; see --help" : "; did you mean " + near + "?"));
@@ -225,7 +217,7 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
   for (const Words& binding : bindings) {
     if (binding.parameter->option.name == "config" && !binding.values.empty()) {
       const std::string& path = binding.values.back();
-      given = applyJson(all, provenance::readJson(path), path, declaration.name);
+      given = applyJson(all, provenance::readJson(path), path);
     }
   }
   for (Words& binding : bindings) {

@@ -22,11 +22,10 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
                                  const std::vector<std::string>& words);
 
 /// Sets values from JSON with (possibly nested) option names as keys; `source` starts messages.
-/// @param command  whose options they are
 /// @return the names set
 /// @throws UsageError  unknown key or wrong value
 std::set<std::string> applyJson(std::vector<Parameter*> parameters, const provenance::Json& values,
-                                const std::string& source, const std::string& command);
+                                const std::string& source);
 
 /// A required value that neither came by words nor by JSON.
 /// @throws UsageError  names it

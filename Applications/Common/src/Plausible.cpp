@@ -21,9 +21,6 @@ void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
 Judge::Judge(Context& context, std::vector<std::string> accepted)
     : context_(context), accepted_(std::move(accepted)) {
   for (const char* ofFiles : {kAcceptHemisphere, kAcceptMesh}) std::erase(accepted_, ofFiles);
-  if (std::erase(accepted_, "mask-edge") > 0) {
-    throw UsageError("--accept mask-edge is gone: a tight mask ends no run; leave it out");
-  }
   try {
     segmentation::checkAccepted(accepted_);
   } catch (const InvalidInput& fault) {

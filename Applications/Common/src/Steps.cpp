@@ -26,7 +26,7 @@ Run nestedRun(const Command& command, const Json& options, const Run& outer,
   nested.invocation = command.begin();
   std::vector<Parameter*> parameters;
   for (Parameter& p : nested.invocation.declaration.parameters) parameters.push_back(&p);
-  nested.given = applyJson(parameters, options, command.name(), command.name());
+  nested.given = applyJson(parameters, options, command.name());
   requireGiven(nested.invocation.declaration, nested.given);
   nested.common = outer.common;
   nested.argv = {"explica", command.name(), provenance::textOf(options)};
