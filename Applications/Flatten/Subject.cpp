@@ -91,9 +91,7 @@ Subject subjectOf(Context& context, const FlattenSettings& s) {
     context.info("areas and lengths are those of '" + original->string() + "'");
   }
   // Faces that run clockwise seen from outside would be laid out mirrored.
-  if (geometry::inspectMesh(mesh).closedManifold() && geometry::enclosedVolume(mesh) < 0) {
-    mesh.faces.col(1).swap(mesh.faces.col(2));
-  }
+  if (geometry::inspectMesh(mesh).closedManifold()) geometry::turnOutward(mesh);
   subject.faces = mesh.allFaces();
   if (s.cuts == kOfTemplate) {
     subject.cuts = readTemplateCuts(context, s, mesh);

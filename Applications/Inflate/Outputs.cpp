@@ -22,7 +22,7 @@ namespace explica::app {
 namespace {
 
 visibility::SphereView lookAt(TriangleMesh mesh, const inflation::InflateOptions& options) {
-  if (geometry::enclosedVolume(mesh) < 0) mesh.faces.col(1).swap(mesh.faces.col(2));
+  geometry::turnOutward(mesh);
   return visibility::lookFromSphere(mesh, visibility::enclosingSphere(mesh, options.viewpoints));
 }
 

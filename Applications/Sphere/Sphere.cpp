@@ -69,8 +69,7 @@ Termination run(Context& context, const SphereSettings& s) {
   sayHowRead(context, loaded.origin);
   // A surface whose faces run clockwise keeps them, on a sphere that is mirrored no more than it.
   TriangleMesh surface = loaded.mesh;
-  const bool inward = geometry::enclosedVolume(surface) < 0;
-  if (inward) surface.faces.col(1).swap(surface.faces.col(2));
+  const bool inward = geometry::turnOutward(surface);
   sphere::SphereMap map;
   {
     auto step = context.step("map");

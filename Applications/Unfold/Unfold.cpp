@@ -180,9 +180,8 @@ TriangleMesh readUsable(Context& context, const UnfoldSettings& s, io::SurfaceMe
   metadata.secondary.clear();
   metadata.name = "unfolded";
   TriangleMesh mesh = loaded.mesh;
-  if (condition.closedManifold() && geometry::enclosedVolume(mesh) < 0) {
+  if (condition.closedManifold() && geometry::turnOutward(mesh)) {
     context.info("faces run clockwise seen from outside: they are turned");
-    mesh.faces.col(1).swap(mesh.faces.col(2));
   }
   return mesh;
 }

@@ -74,8 +74,7 @@ sphere::FoldingSphere readFolding(Context& context, const FoldingFiles& files,
   folding.sphere = io::readSurface(files.sphere, {.space = io::SurfaceSpace::Scanner}).mesh;
   sphere::requireSphere(folding.sphere, files.sphere);
   requireAboutOrigin(folding.sphere, files.sphere);
-  if (geometry::enclosedVolume(folding.sphere) < 0)
-    folding.sphere.faces.col(1).swap(folding.sphere.faces.col(2));
+  geometry::turnOutward(folding.sphere);
   const sphere::OneToOne mended = sphere::makeOneToOne(folding.sphere);
   if (mended.turnedAfter > 0) {
     throw InvalidInput("'" + files.sphere + "': " + std::to_string(mended.turnedAfter) +

@@ -25,10 +25,9 @@ Vector onSphere(int n, int count) {
 /// With faces that run counter-clockwise, seen from above or from outside; an open surface that is
 /// not flat has no outside.
 TriangleMesh facingOut(TriangleMesh mesh, bool flat) {
-  const bool inward =
-      flat ? geometry::faceNormalVectors(mesh).col(2).sum() < 0
-           : geometry::inspectMesh(mesh).closedManifold() && geometry::enclosedVolume(mesh) < 0;
-  if (inward) mesh.faces.col(1).swap(mesh.faces.col(2));
+  if (!flat && geometry::inspectMesh(mesh).closedManifold()) geometry::turnOutward(mesh);
+  const bool down = flat && geometry::faceNormalVectors(mesh).col(2).sum() < 0;
+  if (down) mesh.faces.col(1).swap(mesh.faces.col(2));
   return mesh;
 }
 

@@ -41,6 +41,12 @@ double enclosedVolume(const TriangleMesh& mesh) {
   return sixfold / 6;
 }
 
+bool turnOutward(TriangleMesh& mesh) {
+  const bool inward = enclosedVolume(mesh) < 0;
+  if (inward) mesh.faces.col(1).swap(mesh.faces.col(2));
+  return inward;
+}
+
 Eigen::VectorXd vertexAreas(const TriangleMesh& mesh) {
   const Eigen::VectorXd areas = faceAreas(mesh);
   Eigen::VectorXd result = Eigen::VectorXd::Zero(mesh.vertexCount());

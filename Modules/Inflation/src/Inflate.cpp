@@ -242,7 +242,7 @@ InflateResult inflate(const TriangleMesh& mesh, const InflateOptions& options,
   TriangleMesh work = mesh;
   work.positions.rowwise() -= origin.transpose();
   // Inside out, as the mirror image of a surface is: faces look outward while it is inflated.
-  if (geometry::enclosedVolume(work) < 0) work.faces.col(1).swap(work.faces.col(2));
+  geometry::turnOutward(work);
   const StopScope abandoned(&monitor);  // until there is a state
   Inflation inflation(work, options, monitor);
   if (resume != nullptr) {

@@ -52,8 +52,7 @@ CorticalSurfaces adoptSurfaces(TriangleMesh white, TriangleMesh pial,
                                std::optional<TriangleMesh> mid) {
   requireSameFaces(white, pial, "pial");
   if (mid) requireSameFaces(white, *mid, "middle");
-  if (geometry::enclosedVolume(white) < 0) {  // faces run clockwise seen from outside
-    white.faces.col(1).swap(white.faces.col(2));
+  if (geometry::turnOutward(white)) {
     pial.faces = white.faces;
     if (mid) mid->faces = white.faces;
   }

@@ -17,6 +17,9 @@ namespace explica::geometry {
 /// outside.
 [[nodiscard]] double enclosedVolume(const TriangleMesh& mesh);
 
+/// Turns all faces over where the mesh's volume is negative, and says whether it did.
+bool turnOutward(TriangleMesh& mesh);
+
 /// A third of the areas of the faces at each vertex, mm^2.
 [[nodiscard]] Eigen::VectorXd vertexAreas(const TriangleMesh& mesh);
 
