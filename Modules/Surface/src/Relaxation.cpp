@@ -137,16 +137,15 @@ class Crumpled {
   /// The vertices of a list's faces, each once, in the order of their numbers.
   [[nodiscard]] std::vector<std::int32_t> withNeighbours(
       const std::vector<std::int32_t>& vertices) {
-    std::vector<std::int32_t> list;
     for (const std::int32_t v : vertices) {
       for (const std::int32_t f : mesh_.facesOf(v)) {
-        for (const std::int32_t w : mesh_.face(f)) {
-          if (std::exchange(listed_[w], 1) == 0) list.push_back(w);
-        }
+        for (const std::int32_t w : mesh_.face(f)) listed_[w] = 1;
       }
     }
-    for (const std::int32_t v : list) listed_[v] = 0;
-    std::sort(list.begin(), list.end());
+    std::vector<std::int32_t> list;
+    for (std::size_t v = 0; v < listed_.size(); ++v) {
+      if (std::exchange(listed_[v], 0) != 0) list.push_back(static_cast<std::int32_t>(v));
+    }
     return list;
   }
 
