@@ -24,7 +24,7 @@ constexpr double kLeastDiagonal = 1e-9;    // keeps the matrix definite whatever
 constexpr double kSlowGain = 0.003;  // visibility per iteration below which areas tighten, ...
 constexpr double kTightening = 1.5;  // ... unless told otherwise, by this factor ...
 constexpr double kTightest = 50;     // ... up to this one
-constexpr int kMaxAttempts = 7;      // with 2, 4, 8 ... times the damping of the one before
+constexpr int kMaxAttempts = 12;     // with four times the damping each
 constexpr int kMaxHalvings = 8;      // of an attempt's step
 constexpr double kArmijo = 1e-4;     // of the descent that the gradient promises
 
@@ -51,10 +51,9 @@ class ImplicitStep {
   void differentiate();
   void fill();
   bool solve(Positions& direction);
-  [[nodiscard]] Motion cappedMotion(const Positions& direction) const;
+  [[nodiscard]] Positions cappedMotion(const Positions& direction) const;
   /// Halves the step until the objective does not rise.
   bool search(const Motion& motion, const std::vector<Contact>& onTheWay);
-  [[nodiscard]] double gainRatio(const Motion& motion) const;
   void accept(Motion& motion);
   void tightenAreas();
   void updateMultipliers();
@@ -135,10 +134,8 @@ void ImplicitStep::differentiate() {
 }
 
 bool ImplicitStep::take() {
-  double growth = 2;
-  for (int n = 0; n < kMaxAttempts; ++n, growth *= 2) {
+  for (int n = 0; n < kMaxAttempts; ++n, state_.damping *= 4) {
     if (attempt()) return true;
-    state_.damping *= growth;
   }
   return false;
 }
@@ -146,7 +143,7 @@ bool ImplicitStep::take() {
 bool ImplicitStep::attempt() {
   Positions direction;
   if (!solve(direction)) return false;
-  Motion motion = cappedMotion(direction);
+  Motion motion{cappedMotion(direction)};
   motion.descent = (gradient_.array() * motion.by.array()).sum();
   if (!(motion.descent < 0)) return false;
   std::vector<Contact> onTheWay;
@@ -189,14 +186,14 @@ bool ImplicitStep::solve(Positions& direction) {
 }
 
 /// The direction (one row per unknown) on all vertices (V x 3), none farther than it may go.
-Motion ImplicitStep::cappedMotion(const Positions& direction) const {
+Positions ImplicitStep::cappedMotion(const Positions& direction) const {
   const double largest = std::sqrt(direction.rowwise().squaredNorm().maxCoeff());
   const double cap = kLargestMove * u_.setup.edge;
-  Motion motion{.by = Positions::Zero(state_.positions.rows(), 3)};
-  motion.share = largest > cap ? cap / largest : 1;
+  const double share = largest > cap ? cap / largest : 1;
+  Positions motion = Positions::Zero(state_.positions.rows(), 3);
   const auto& moving = u_.setup.moving;
   for (std::size_t i = 0; i < moving.size(); ++i) {
-    motion.by.row(moving[i]) = motion.share * direction.row(static_cast<Eigen::Index>(i));
+    motion.row(moving[i]) = share * direction.row(static_cast<Eigen::Index>(i));
   }
   return motion;
 }
@@ -219,22 +216,6 @@ bool ImplicitStep::search(const Motion& motion, const std::vector<Contact>& onTh
   return false;
 }
 
-/// What the step gained over what the quadratic model promised without its damping.  With it, all
-/// of the way to the model's minimum, of which the motion d is a share, has H way = -g.
-double ImplicitStep::gainRatio(const Motion& motion) const {
-  const auto& unknown = u_.setup.unknown;
-  double metric = kMassShare * motion.by.squaredNorm();
-  for (const PatchSpring& spring : u_.setup.patch.springs) {
-    const auto& [a, b] = spring.vertices;
-    if (unknown[a] < 0 || unknown[b] < 0) continue;
-    metric += (motion.by.row(a) - motion.by.row(b)).squaredNorm();
-  }
-  const double t = now_.step;
-  const double promised =
-      -t * motion.descent * (1 - 0.5 * t * motion.share) + 0.5 * t * t * state_.damping * metric;
-  return (now_.objectiveBefore - now_.objectiveAfter) / promised;
-}
-
 void ImplicitStep::accept(Motion& motion) {
   now_.safeStep = motion.safe;
   now_.largestMove = now_.step * std::sqrt(motion.by.rowwise().squaredNorm().maxCoeff());
@@ -244,7 +225,11 @@ void ImplicitStep::accept(Motion& motion) {
   state_.positions = trial_;
   state_.iteration = now_.iteration;
   u_.contacts.remember(collision::pairsOf(motion.meetings));
-  state_.damping = std::max(kLeastDamping, state_.damping * dampingFactor(gainRatio(motion)));
+  if (now_.step == 1) {
+    state_.damping = std::max(kLeastDamping, state_.damping / 4);
+  } else if (now_.step < 0.25 * now_.safeStep) {
+    state_.damping *= 2;
+  }
   updateMultipliers();
   u_.measure(now_);
   tightenAreas();

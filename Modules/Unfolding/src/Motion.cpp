@@ -6,7 +6,6 @@
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Parallel.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -81,10 +80,6 @@ class Welds {
 };
 
 }  // namespace
-
-double dampingFactor(double gainRatio) {
-  return std::max(1.0 / 3, 1 - std::pow(2 * gainRatio - 1, 3));
-}
 
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) {
   motion.meetings = contacts.scene().findMeetings(x, motion.by, contacts.range());

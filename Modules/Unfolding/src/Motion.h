@@ -9,14 +9,9 @@ namespace explica::unfolding {
 /// Share of a step below which the pairs that stop it are dealt with.
 inline constexpr double kBlocked = 0.3;
 
-/// Factor of the damping after a step that gained this share of what its model promised
-/// [Nielsen1999]: 1/3 at least where it gained all or more, 2 where nothing.
-[[nodiscard]] double dampingFactor(double gainRatio);
-
 /// A step that has been proposed, and what stands in its way.
 struct Motion {
   Positions by = {};                              ///< V x 3, mm
-  double share = 1;                               ///< of the way to the model's minimum
   double descent = 0;                             ///< gradient . by
   double safe = 0;                                ///< share of it that collision detection allows
   std::vector<collision::Meeting> meetings = {};  ///< on the way, or within range of it

@@ -137,34 +137,11 @@ TEST(Unfolder, ACollarIsAsWideAsTheRegionOrAsItIsDeep) {
   EXPECT_NEAR(widest, 0.6 * whole, 1e-9);
 }
 
-TEST(Motion, DampingFollowsWhatAStepGainsOfWhatItsModelPromised) {
-  EXPECT_DOUBLE_EQ(dampingFactor(0), 2);
-  EXPECT_DOUBLE_EQ(dampingFactor(0.5), 1);
-  EXPECT_DOUBLE_EQ(dampingFactor(1), 1.0 / 3);
-  EXPECT_DOUBLE_EQ(dampingFactor(5), 1.0 / 3);
-}
-
 /// A narrow collar: the walls above it hold the region down, unless they are parted.
 UnfoldOptions inTheFlask() {
   UnfoldOptions options;
   options.unfolder.collarWidth = 2.1;
   return options;
-}
-
-TEST(Unfolder, ACollisionThatCutsAStepShortSaysNothingOfItsModel) {
-  const Flask flask(8, 0.4);
-  Unfolder unfolder(flask.mesh, regionOfMarked(flask.mesh, flask.bottom),
-                    visibility::viewpoint(Point(0, 0, 1000)), inTheFlask().unfolder);
-  int cut = 0, lessDamped = 0;
-  for (int n = 0; n < 40; ++n) {
-    if (!unfolder.step()) break;
-    const IterationRecord& r = unfolder.record();
-    if (r.safeStep == 1 || r.step < r.safeStep) continue;
-    ++cut;
-    lessDamped += unfolder.state().damping < r.damping;
-  }
-  EXPECT_GT(cut, 0);
-  EXPECT_GT(lessDamped, 0);
 }
 
 TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {

@@ -8,6 +8,7 @@
 #include "Explica/Visibility/Viewpoints.h"
 
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace explica::visibility {
