@@ -16,6 +16,15 @@
 namespace explica::geometry {
 namespace {
 
+TEST(TurnOutward, TurnsClockwiseFacesOnceOnly) {
+  TriangleMesh mesh = makeIcosphere(2);
+  const double volume = enclosedVolume(mesh);
+  mesh.faces.col(1).swap(mesh.faces.col(2));
+  EXPECT_TRUE(turnOutward(mesh));
+  EXPECT_DOUBLE_EQ(enclosedVolume(mesh), volume);
+  EXPECT_FALSE(turnOutward(mesh));
+}
+
 TEST(MeshMeasures, SphereConvergesAtSecondOrder) {
   std::vector<double> areaError, volumeError;
   for (int level = 2; level <= 5; ++level) {
