@@ -17,10 +17,10 @@
 namespace explica::unfolding {
 namespace {
 
-// Of the region's area: less than that below, or less gained by a parting, is no reason for one.
-constexpr double kSunk = 0.01;
-constexpr double kWiden = 1.5;   // factor of the collar's width where surroundings part further ...
-constexpr double kStronger = 2;  // ... and of the lift
+constexpr double kSunk = 0.01;   // of the region's area: less than that below is no reason
+constexpr int kMostWays = 3;     // times that surroundings are asked to part further ...
+constexpr double kWiden = 1.5;   // ... by this factor of the collar's width ...
+constexpr double kStronger = 2;  // ... and this one of the lift
 
 }  // namespace
 
@@ -144,17 +144,12 @@ void Unfolder::steer(Phase phase, double factor) {
   self_->state.drive *= factor;
 }
 bool Unfolder::isHeldBelow() const {
-  return self_->options.surround == Surround::Elastic && self_->state.sunk > 0 &&
+  return self_->options.surround == Surround::Elastic && self_->state.ways < kMostWays &&
          sunkShare(self_->setup.patch, self_->state.positions) > kSunk;
 }
 void Unfolder::makeWay() {
   UnfoldState& state = self_->state;
-  const double sunk = sunkShare(self_->setup.patch, state.positions);
-  if (!(sunk < state.sunk - kSunk)) {
-    state.sunk = 0;
-    return;
-  }
-  state.sunk = sunk;
+  ++state.ways;
   state.driveIteration = state.iteration;
   state.lift *= kStronger;
   state.collarWidth *= kWiden;

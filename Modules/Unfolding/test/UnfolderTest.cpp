@@ -9,7 +9,6 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
-#include "Explica/Geometry/Fixtures.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "Explica/Testing/InstructionSets.h"
@@ -155,6 +154,7 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
   const bool met = meetsGoals(kGoalVisibility, end.visibility, seen, end.edgeStrainMean);
   EXPECT_EQ(result.flag, met ? Flag::None : Flag::Held);
   EXPECT_EQ(reachedGoal(result.termination), met);
+  EXPECT_GE(result.checkpoint.state.ways, 1);
   EXPECT_GT(result.checkpoint.state.collarWidth, 2.1);
   EXPECT_GT(result.history.back().visibility, 0.95);
   double lowest = kInfinity;
@@ -165,23 +165,6 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
   EXPECT_TRUE(geometry::findSelfIntersections(result.mesh).empty());
 }
 
-TEST(Unfold, SurroundingsAreNotPartedAgainWhereThatGainedNothing) {
-  // A floor under a lid of all its size: no collar is wide enough to bring it past that.
-  TriangleMesh mesh = geometry::makeRectangle(16, 16, 16, 16);
-  TriangleMesh lid = mesh;
-  lid.positions.col(2).array() += 3;
-  mesh = geometry::joined(mesh, lid);
-  std::vector<bool> marked = interiorOf(16, 16, 5);
-  marked.resize(static_cast<std::size_t>(mesh.vertexCount()), false);
-  const Region region = regionOfMarked(mesh, marked);
-  UnfoldOptions options;
-  options.unfolder.collarWidth = 2;
-  const UnfoldResult result =
-      unfold(mesh, region, visibility::viewpoint(Point(8, 8, 1000)), options);
-  EXPECT_NE(result.flag, Flag::None);
-  EXPECT_EQ(result.checkpoint.state.collarWidth, 1.5 * 2);
-}
-
 TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
   const Flask flask(8, 0.4);
   const Region region = regionOfMarked(flask.mesh, flask.bottom);
@@ -189,7 +172,7 @@ TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
   UnfoldOptions options = inTheFlask();
   options.frames = 4;
   const UnfoldResult whole = unfold(flask.mesh, region, view, options);
-  ASSERT_GT(whole.checkpoint.state.collarWidth, 2.1);
+  ASSERT_GE(whole.checkpoint.state.ways, 1);
   for (const int part : {5, static_cast<int>(whole.history.size()) - 3}) {
     UnfoldOptions brief = options;
     brief.maxIterations = part;

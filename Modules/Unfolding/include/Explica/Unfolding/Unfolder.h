@@ -134,8 +134,7 @@ struct UnfoldState {
   int driveIteration = 0;    ///< when it was raised last, or way was made
   double lift = 1;           ///< factor of weights.lift, raised where way was made
   double collarWidth = 0;    ///< mm along the surface; wider where way was made
-  /// Share of the region's area that lay below when way was made last; 0: that gained nothing.
-  double sunk = kInfinity;
+  int ways = 0;              ///< how often that was
   int iteration = 0;
   bool stalled = false;  ///< no step lowered the objective
   Look look;             ///< the last
@@ -178,8 +177,7 @@ class Unfolder {
   /// still be asked to part further.
   [[nodiscard]] bool isHeldBelow() const;
   /// Parts the surroundings: from now on more of them moves (beginning where it stands, so that
-  /// nothing is lost), and the region is pulled up with more force.  More vertices move then. Where
-  /// that gained nothing when it was done last, it is given up.
+  /// nothing is lost), and the region is pulled up with more force.  More vertices move then.
   void makeWay();
 
   /// Share of the region's area that is seen from the viewpoints, by rays: about as expensive as a
