@@ -84,6 +84,7 @@ void AppendixA(benchmark::State& state) {
 }
 BENCHMARK(Lagrangian)->Unit(benchmark::kMillisecond);
 BENCHMARK(Eulerian)->Unit(benchmark::kMillisecond);
+BENCHMARK(AppendixA)->Arg(50)->Unit(benchmark::kMillisecond);
 BENCHMARK(Hybrid)->Arg(0)->Arg(1)->Arg(10)->Arg(50)->Arg(100)->Arg(200)->Arg(-1)->Unit(
     benchmark::kMillisecond);
 
