@@ -151,20 +151,13 @@ Room roomOf(const WhiteSurface& white) {
   return roomFor(voxelSize(white.level.grid), white.edgeLength);
 }
 
-/// That of the ribbon's voxels around the middle vertices; where a coarse mesh has taken one out of
-/// the ribbon, in the middle of its trajectory.
+/// That of the ribbon's voxels around the middle vertices.
 void takeThickness(const GrowingColumns& columns, const RibbonVoxels& voxels,
                    CorticalSurfaces& result) {
   result.thickness = thicknessAtVertices(voxels.annulus, voxels.found, result.mid);
   for (Eigen::Index v = 0; v < result.thickness.size(); ++v) {
-    const Trajectory& path = columns.paths[v];
-    double& thickness = result.thickness[v];
-    if (path.end == TrajectoryEnd::NoRibbon) {
-      thickness = 0;
-    } else if (!(thickness > 0)) {
-      const Point middle = path.at(0.5 * path.length());
-      thickness = correspondence::thicknessAt(voxels.annulus, voxels.found, middle).value_or(0);
-    }
+    const bool none = columns.paths[v].end == TrajectoryEnd::NoRibbon;
+    if (none || !(result.thickness[v] > 0)) result.thickness[v] = 0;
   }
   result.noRibbon = (result.thickness.array() == 0).count();
   for (const Trajectory& path : columns.paths) {

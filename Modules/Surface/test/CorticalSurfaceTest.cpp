@@ -361,23 +361,6 @@ TEST(CorticalSurface, MeanThicknessIsFreeOfSampling) {
   EXPECT_NEAR(meanOf(finer(labels, 3, 2), 12000), mean, 0.02);
 }
 
-TEST(CorticalSurface, ACoarseMeshHasThicknessAtItsVertices) {
-  // Where a coarse mesh cuts corners, its middle vertices lie beside the ribbon (3 of 302 at 600
-  // faces).
-  TissueOptions options;
-  options.white = {3};
-  options.grey = {2};
-  const CorticalTissue tissue = tissueFromLabels(groovedLabels(19 * kPi / 180), options);
-  for (const int faces : {600, 1200}) {
-    SurfaceOptions few;
-    few.faces = faces;
-    const auto made = buildSurfaces(tissue, few);
-    std::printf("%d faces: %d of %d vertices without thickness\n", faces,
-                static_cast<int>(made.noRibbon), static_cast<int>(made.thickness.size()));
-    EXPECT_EQ(made.noRibbon, 0) << faces;
-  }
-}
-
 /// Brightness at signed distances to white matter's and the tissue's border, mm, positive inside,
 /// seen through a point spread.
 float brightnessAt(double white, double tissue) {
