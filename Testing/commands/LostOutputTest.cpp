@@ -89,13 +89,15 @@ TEST_P(Ending, ByASecondSignalLeavesNothing) {
   setting.directory = folder.path();
   setting.environment["EXPLICA"] = EXPLICA_EXECUTABLE;
   const std::string name = GetParam().first;
-  // Once the stage is there, one signal asks for an end and another one forces it.
+  // Once the stage is there, one signal asks for an end and another one forces it. The program is
+  // halted meanwhile, so that it cannot have ended by the first before the second is sent.
   const auto result = runProgram(
       {"bash", "-c",
        "env --default-signal \"$EXPLICA\" phantom shell --size 240 --out big & p=$!\n"
        "while [ ! -e .big.explica-stage ] && kill -0 $p 2> /dev/null; do sleep 0.01; done\n"
+       "kill -s STOP $p; until grep -q '^State:.[TZ]' /proc/$p/status; do sleep 0.01; done\n"
        "kill -s USR1 $p; kill -s " +
-           name + " $p; wait $p; echo $?"},
+           name + " $p; kill -s CONT $p; wait $p; echo $?"},
       setting);
   // Which of two signals at a time comes second is the system's choice.
   const std::string ended = std::to_string(128 + GetParam().second) + "\n";
