@@ -124,7 +124,7 @@ ALL = [
              "return seen < kGoalSeen ? std::max(spare, seen - kGoalSeen) : spare;",
              "ExplicaUnfoldingUnitTests", "Unfold.AState*"),
     Mutation("Modules/Correspondence/src/Field.h",
-             "outcome == Outcome::Arrived || (walks[w].stuck && hop(walks[w], target, uphill));",
+             "outcome == Outcome::Arrived || (walk.stuck && hop(walk, target, uphill));",
              "outcome == Outcome::Arrived;",
              "ExplicaCorrespondenceUnitTests", "Measurement.*"),
     Mutation("Modules/Correspondence/src/ImageEdge.cpp",

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <thread>
 #include <utility>
@@ -27,13 +28,22 @@ namespace {
 
 using Tracer = TrajectoryTracer::Field;
 constexpr std::size_t kBlock = 1 << 13;  // voxels a task
-// Default lambda in voxels.  Corners of a grid face are up to sqrt(2) voxels apart, and so are
-// their boundary points where trajectories run in parallel: beyond this they diverge.
-constexpr double kLambda = 2;
+// Default lambda over the longest diagonal of a grid face: so far apart are the boundary points of
+// its corners where trajectories run in parallel.  Beyond it they diverge.
+const double kLambda = std::sqrt(2);
 
 /// What one side has found at a voxel: boundary point minus the voxel's centre along the grid's
 /// axes, then the length, mm; NaN where the trajectory did not arrive.
 using Arrival = Eigen::Array4f;
+
+/// mm between the corners of a grid face that are farthest apart, times kLambda.
+double defaultLambda(const Annulus& annulus) {
+  std::array<double, 3> h;
+  std::ranges::copy(annulus.grid.spacing, h.begin());
+  const auto end = annulus.planar ? h.end() - 1 : h.end();
+  std::sort(h.begin(), end);
+  return kLambda * std::hypot(end[-1], end[-2]);
+}
 
 /// Tissue in steps of u: those of one step do not depend on each other.
 struct Steps {
@@ -185,7 +195,7 @@ class Sweep {
         uphill_(inner ? -1 : 1),
         target_(inner ? 0.0 : 1.0),
         wall_(inner ? kInner : kOuter),
-        lambda_(static_cast<float>(options.lambda.value_or(kLambda * tracer.finest))),
+        lambda_(static_cast<float>(options.lambda.value_or(defaultLambda(annulus_)))),
         spacing_(annulus_.grid.spacing.cast<float>()),
         arrivals_(annulus_.count(), Arrival::Constant(static_cast<float>(kNaN))) {}
 
@@ -229,7 +239,7 @@ class Sweep {
       turn_[r] = onCut(static_cast<std::int32_t>(r)) ? kNever : ownTurn_[r];
     });
     traceBesideWall();
-    followToPlanes();
+    followToFaces();
   }
 
   /// Follows the trajectories of a block's voxels, each after those at the corners that it meets.
@@ -301,27 +311,32 @@ class Sweep {
   void traceBesideWall() {
     const auto ended = [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
       if (!done) return;
-      store(r, tracer_.placeOf[r], walk);
+      store(r, walk);
       if (!onCut(r)) turn_[r] = 0;
       if (!state_.empty()) state_[r].store(State::Interpolated, std::memory_order_relaxed);
     };
     traced_ += parallelSum(arrivals_.size(), 1 << 12, std::size_t{0},
                            [&](std::size_t begin, std::size_t end) {
                              std::size_t sum = 0;
-                             const auto next = [&] {
+                             const auto next = [&](Tracer::Walk& walk) {
                                while (begin < end && !isBesideWall(begin)) ++begin;
                                if (begin == end) return -1;
                                ++sum;
+                               walk = tracer_.begin(tracer_.placeOf[begin], uphill_);
                                return static_cast<std::int32_t>(begin++);
                              };
-                             tracer_.followEach(target_, uphill_, next, ended);
+                             tracer_.followEach(target_, uphill_, next, atNoFace, ended);
                              return sum;
                            });
   }
 
-  /// Puts the ways to the first grid planes where the arrivals of what is still open will be.
-  void followToPlanes() {
+  static bool atNoFace(std::int32_t, const Vector&, double, const Tracer::Walk&) { return false; }
+
+  /// Puts the ways to the first grid faces whose corners have earlier turns where the arrivals of
+  /// what is still open will be; what meets none is settled.
+  void followToFaces() {
     parallelForBlocks(arrivals_.size(), 1 << 12, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::int32_t> beyond;  // ranks that go on after their first planes
       while (begin < end) {
         std::int32_t open[kBeside];
         Arrival first[kBeside];
@@ -332,9 +347,74 @@ class Sweep {
         }
         if (count == 0) break;
         tracer_.toPlane(open, first, count, uphill_);
-        for (int w = 0; w < count; ++w) arrivals_[open[w]] = first[w];
+        for (int w = 0; w < count; ++w) {
+          arrivals_[open[w]] = first[w];
+          if (!isUsable(open[w], first[w])) beyond.push_back(open[w]);
+        }
       }
+      followToFaces(beyond);
     });
+  }
+
+  /// Whether a way leads to a grid face whose corners have earlier turns.
+  [[nodiscard]] bool isUsable(std::int32_t r, const Arrival& way) const {
+    if (std::isnan(way[3])) return false;
+    const std::optional<Face> face = faceAt(axisOf(way), endOf(r, way));
+    return face && haveEarlierTurns(*face, ownTurn_[r]);
+  }
+
+  void followToFaces(const std::vector<std::int32_t>& ranks) {
+    std::size_t at = 0;
+    const auto next = [&](Tracer::Walk& walk) {
+      if (at == ranks.size()) return -1;
+      const std::int32_t r = ranks[at++];
+      walk = onwardFrom(r, arrivals_[r], annulus_.numberAt[tracer_.placeOf[r]]);
+      return r;
+    };
+    const auto passed = [&](std::int32_t r, const Vector& from, double lengthFrom,
+                            const Tracer::Walk& walk) {
+      return atFaceBetween(from, walk.x, lengthFrom, walk.length,
+                           [&](int axis, const Vector& x, double length) {
+                             const std::optional<Face> face = faceAt(axis, x);
+                             if (!face || !haveEarlierTurns(*face, ownTurn_[r])) return false;
+                             const Vector way = x - centreOf(r);
+                             arrivals_[r] << way.cast<float>().array(), static_cast<float>(length);
+                             return true;
+                           });
+    };
+    const auto ended = [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
+      arrivals_[r][3] = static_cast<float>(kNaN);
+      if (done) store(r, walk);
+      state_[r].store(State::Followed, std::memory_order_relaxed);
+    };
+    tracer_.followEach(target_, uphill_, next, passed, ended);
+  }
+
+  /// The axis of the grid plane at the end of a way from a voxel's centre: the way along it is a
+  /// whole number of voxels.
+  [[nodiscard]] static int axisOf(const Arrival& way) {
+    int axis = 0;
+    while (axis < 2 && (way[axis] == 0 || way[axis] != std::round(way[axis]))) ++axis;
+    return axis;
+  }
+  [[nodiscard]] Vector centreOf(std::int32_t r) const {
+    const auto s = subscripts(tracer_.placeOf[r]);
+    return {static_cast<double>(s[0]), static_cast<double>(s[1]), static_cast<double>(s[2])};
+  }
+  [[nodiscard]] Vector endOf(std::int32_t r, const Arrival& way) const {
+    return centreOf(r) + way.head<3>().matrix().cast<double>();
+  }
+
+  /// A walk that goes on where a way ends; from the centre if that is NaN, does not get there or
+  /// gets beyond the boundary.
+  [[nodiscard]] Tracer::Walk onwardFrom(std::int32_t r, const Arrival& way,
+                                        std::int32_t home) const {
+    if (!std::isnan(way[3])) {
+      Tracer::Walk walk = tracer_.begin(endOf(r, way), home, uphill_);
+      walk.length = way[3];
+      if (!walk.stuck && uphill_ * (walk.u - target_) < 0) return walk;
+    }
+    return tracer_.begin(tracer_.placeOf[r], uphill_);
   }
 
   [[nodiscard]] bool isBesideWall(std::size_t r) const {
@@ -347,9 +427,14 @@ class Sweep {
   /// Follows the trajectories of all ranks that next() gives until it gives -1.
   template <class Next>
   void traceToWall(const Next& next) {
-    tracer_.followEach(target_, uphill_, next,
+    const auto begin = [&](Tracer::Walk& walk) {
+      const std::int32_t r = next();
+      if (r >= 0) walk = tracer_.begin(tracer_.placeOf[r], uphill_);
+      return r;
+    };
+    tracer_.followEach(target_, uphill_, begin, atNoFace,
                        [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
-                         if (done) store(r, tracer_.placeOf[r], walk);
+                         if (done) store(r, walk);
                        });
   }
 
@@ -357,9 +442,8 @@ class Sweep {
     traceToWall([&] { return std::exchange(r, -1); });
   }
 
-  void store(std::int32_t r, std::int32_t place, const Tracer::Walk& walk) {
-    const auto s = subscripts(place);
-    const Vector way = (walk.x - Vector(s[0], s[1], s[2])).cwiseProduct(annulus_.grid.spacing);
+  void store(std::int32_t r, const Tracer::Walk& walk) {
+    const Vector way = (walk.x - centreOf(r)).cwiseProduct(annulus_.grid.spacing);
     arrivals_[r] << way.cast<float>(), static_cast<float>(walk.length);
   }
 
@@ -419,45 +503,39 @@ class Sweep {
 
   /// Follows the trajectory to the first grid face whose corners have earlier turns and agree
   /// within lambda, else to the boundary.
-  /// @param first  way to the first grid plane, if it is known
+  /// @param first  way to a grid face, if one is known
   /// @return  whether it went past a face whose corners disagree, or to the boundary
   bool traceToFace(std::int32_t r, const Arrival& first, std::uint16_t turn) {
-    const std::int32_t place = tracer_.placeOf[r];
-    const auto s = subscripts(place);
     bool disagreed = false;
-    Tracer::Walk walk{.stuck = true};
+    std::int32_t home = annulus_.numberAt[tracer_.placeOf[r]];
     if (!std::isnan(first[3])) {
-      int axis = 0;
-      while (std::abs(first[axis]) != 1) ++axis;
-      const Vector x = Vector(s[0], s[1], s[2]) + first.head<3>().matrix().cast<double>();
-      if (fromFace(r, s, turn, axis, static_cast<int>(x[axis]), x, first[3], disagreed)) {
-        return false;
-      }
-      walk = tracer_.begin(x, annulus_.numberAt[place], uphill_);
-      walk.length = first[3];
+      const std::optional<Face> face = faceAt(axisOf(first), endOf(r, first));
+      if (face && fromFace(r, *face, turn, first[3], disagreed)) return false;
+      // Corners that have their turns are not cut off from each other: each tells the side.
+      if (face && haveEarlierTurns(*face, turn)) home = annulus_.numberAt[face->place[0]];
     }
+    Tracer::Walk walk = onwardFrom(r, first, home);
     bool done = uphill_ * (walk.u - target_) >= 0;
-    if (walk.stuck || done) {  // the plane is not reached, or lies beyond the boundary
-      walk = tracer_.begin(place, uphill_);
-      done = uphill_ * (walk.u - target_) >= 0;
-    }
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
       const Vector before = walk.x;
       const double lengthBefore = walk.length;
       done = tracer_.advance(walk, target_, uphill_);
       if (done || walk.stuck) break;
-      if (fromFaceBetween(r, s, turn, before, walk.x, lengthBefore, walk.length, disagreed)) {
-        return disagreed;
-      }
+      const auto interpolate = [&](int axis, const Vector& x, double length) {
+        const std::optional<Face> face = faceAt(axis, x);
+        return face && fromFace(r, *face, turn, length, disagreed);
+      };
+      if (atFaceBetween(before, walk.x, lengthBefore, walk.length, interpolate)) return disagreed;
     }
-    if (done) store(r, place, walk);
+    if (done) store(r, walk);
     return true;
   }
 
-  /// Interpolates on the first usable grid face between two points at most a voxel apart.
-  bool fromFaceBetween(std::int32_t r, const std::array<int, 3>& s, std::uint16_t turn,
-                       const Vector& from, const Vector& to, double lengthFrom, double lengthTo,
-                       bool& disagreed) {
+  /// Calls at(axis, x, length) for the grid planes between two points at most a voxel apart, in the
+  /// order in which they are met, until it returns true: whether it did.
+  template <class At>
+  bool atFaceBetween(const Vector& from, const Vector& to, double lengthFrom, double lengthTo,
+                     const At& at) const {
     const Vector step = to - from;
     struct Pierced {
       double t;
@@ -473,38 +551,61 @@ class Sweep {
       const int ahead = step[a] > 0 ? below + 1 : below - (from[a] == below ? 1 : 0);
       const double t = (ahead - from[a]) / step[a];
       if (t > 1) continue;
-      int at = count++;
-      for (; at > 0 && pierced[at - 1].t > t; --at) pierced[at] = pierced[at - 1];
-      pierced[at] = {t, a, ahead};
+      int n = count++;
+      for (; n > 0 && pierced[n - 1].t > t; --n) pierced[n] = pierced[n - 1];
+      pierced[n] = {t, a, ahead};
     }
     for (int k = 0; k < count; ++k) {
       const double t = pierced[k].t;
-      if (fromFace(r, s, turn, pierced[k].axis, pierced[k].plane, from + t * step,
-                   lengthFrom + t * (lengthTo - lengthFrom), disagreed)) {
-        return true;
-      }
+      Vector x = from + t * step;
+      x[pierced[k].axis] = pierced[k].plane;
+      if (at(pierced[k].axis, x, lengthFrom + t * (lengthTo - lengthFrom))) return true;
     }
     return false;
   }
 
-  /// Interpolates on the grid face that contains x, if its corners have earlier turns and agree.
-  bool fromFace(std::int32_t r, const std::array<int, 3>& s, std::uint16_t turn, int axis,
-                int plane, const Vector& x, double length, bool& disagreed) {
-    int b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2;  // ascending, so pairs lie in memory's order
-    std::array<int, 3> base{};
-    base[axis] = plane;
-    base[b] = static_cast<int>(x[b]);
-    base[c] = annulus_.planar ? static_cast<int>(std::lround(x[2])) : static_cast<int>(x[c]);
-    if (!inBox(base, axis)) return false;
-    const auto fb = static_cast<float>(x[b] - base[b]);
-    const auto fc = annulus_.planar ? 0.0F : static_cast<float>(x[c] - base[c]);
+  /// A face of the grid between voxel centres, with a place in it.
+  struct Face {
+    int b, c;                 ///< its axes, ascending, so that pairs lie in memory's order
+    std::array<int, 3> base;  ///< first corner
+    std::int32_t place[4];    ///< of its corners, two if planar
+    float fb, fc;             ///< the place, from the first corner
+  };
+
+  /// The face that contains x; nothing beyond the image, which a trajectory may leave.
+  [[nodiscard]] std::optional<Face> faceAt(int axis, const Vector& x) const {
+    Face face;
+    const int b = face.b = axis == 0 ? 1 : 0, c = face.c = axis == 2 ? 1 : 2;
+    face.base[axis] = static_cast<int>(x[axis]);
+    face.base[b] = static_cast<int>(x[b]);
+    face.base[c] = annulus_.planar ? static_cast<int>(std::lround(x[2])) : static_cast<int>(x[c]);
+    if (!inBox(face.base, axis)) return {};
+    face.fb = static_cast<float>(x[b] - face.base[b]);
+    face.fc = annulus_.planar ? 0.0F : static_cast<float>(x[c] - face.base[c]);
     const auto strides = annulus_.strides();
-    const std::int32_t p = base[0] + base[1] * strides[1] + base[2] * strides[2];
-    const int corners = annulus_.planar ? 2 : 4;
-    std::int32_t place[4];
+    const std::int32_t p = face.base[0] + face.base[1] * strides[1] + face.base[2] * strides[2];
+    for (int e = 0; e < corners(); ++e) {
+      face.place[e] = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
+    }
+    return face;
+  }
+  [[nodiscard]] int corners() const { return annulus_.planar ? 2 : 4; }
+
+  [[nodiscard]] bool haveEarlierTurns(const Face& face, std::uint16_t turn) const {
+    return std::all_of(face.place, face.place + corners(), [&](std::int32_t place) {
+      const std::int32_t m = tracer_.rankAt[place];
+      return m >= 0 && turn_[m] < turn;
+    });
+  }
+
+  /// Interpolates on a grid face, if its corners have earlier turns and agree.
+  bool fromFace(std::int32_t r, const Face& face, std::uint16_t turn, double length,
+                bool& disagreed) {
+    const auto& [b, c, base, place, fb, fc] = face;
+    const int corners = this->corners();
+    const auto strides = annulus_.strides();
     const Arrival* arrival[4];
     for (int e = 0; e < corners; ++e) {
-      place[e] = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
       arrival[e] = earlier(place[e], turn);
       if (arrival[e] == nullptr) return false;
     }
@@ -539,6 +640,7 @@ class Sweep {
         }
       }
     }
+    const auto s = subscripts(tracer_.placeOf[r]);
     for (int a = 0; a < 3; ++a) sum[a] += static_cast<float>(base[a] - s[a]) * spacing_[a];
     sum[3] += static_cast<float>(length);
     arrivals_[r] = sum;

@@ -72,12 +72,14 @@ struct TrajectoryTracer::Field {
   /// Nothing if no tissue is within two voxels.
   [[nodiscard]] std::optional<Start> startAt(const Point& point, double target) const;
 
-  /// Follows the trajectories through the centres of tissue voxels to the target, a few beside each
-  /// other; each goes as it would alone.
-  /// @param next   next() gives the rank of a voxel, or -1 after the last one
-  /// @param ended  ended(rank, walk, done) takes each, in no particular order
-  template <class Next, class Ended>
-  void followEach(double target, int uphill, const Next& next, const Ended& ended) const;
+  /// Follows trajectories to the target, a few beside each other; each goes as it would alone.
+  /// @param next    next(walk) begins a walk and gives the rank of its voxel; -1 after the last one
+  /// @param passed  passed(rank, from, lengthFrom, walk) is asked after each step but the last,
+  ///                which began at `from`: whether that is far enough
+  /// @param ended   ended(rank, walk, done) takes all others, in no particular order
+  template <class Next, class Passed, class Ended>
+  void followEach(double target, int uphill, const Next& next, const Passed& passed,
+                  const Ended& ended) const;
 
   /// Tissue voxel to start from for any point: in its cell, else the nearest within two voxels.
   [[nodiscard]] std::int32_t homeOf(const Vector& x) const;
@@ -144,18 +146,17 @@ struct TrajectoryTracer::Field {
   FieldView view_;
 };
 
-template <class Next, class Ended>
+template <class Next, class Passed, class Ended>
 void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& next,
-                                         const Ended& ended) const {
+                                         const Passed& passed, const Ended& ended) const {
   std::array<Walk, kBeside> walks;
   StepLanes tries;
   std::array<std::int32_t, kBeside> rank{}, steps{};
   int count = 0;
   const auto beginNext = [&](int w) {
     for (;;) {
-      rank[w] = next();
+      rank[w] = next(walks[w]);
       if (rank[w] < 0) return false;
-      walks[w] = begin(placeOf[rank[w]], uphill);
       steps[w] = 0;
       const bool done = uphill * (walks[w].u - target) >= 0;
       if (!done && !walks[w].stuck) break;
@@ -164,20 +165,27 @@ void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& 
     limitStep(walks[w], target, uphill);
     return true;
   };
+  /// Whether the walk goes on.
+  const auto goesOn = [&](int w) {
+    Walk& walk = walks[w];
+    const Vector from = walk.x;
+    const double lengthFrom = walk.length;
+    const Outcome outcome = conclude(walk, tries, w, target, uphill);
+    if (outcome == Outcome::Again) return true;
+    const bool done = outcome == Outcome::Arrived || (walk.stuck && hop(walk, target, uphill));
+    if (!done && !walk.stuck && passed(rank[w], from, lengthFrom, walk)) return false;
+    if (done || walk.stuck || ++steps[w] >= kMaxSteps) {
+      ended(rank[w], walk, done);
+      return false;
+    }
+    limitStep(walk, target, uphill);
+    return true;
+  };
   while (count < kBeside && beginNext(count)) ++count;
   while (count > 0) {
     attempt(walks.data(), tries, count, uphill);
     for (int w = count - 1; w >= 0; --w) {
-      const Outcome outcome = conclude(walks[w], tries, w, target, uphill);
-      if (outcome == Outcome::Again) continue;
-      const bool done =
-          outcome == Outcome::Arrived || (walks[w].stuck && hop(walks[w], target, uphill));
-      if (!done && !walks[w].stuck && ++steps[w] < kMaxSteps) {
-        limitStep(walks[w], target, uphill);
-        continue;
-      }
-      ended(rank[w], walks[w], done);
-      if (beginNext(w)) continue;
+      if (goesOn(w) || beginNext(w)) continue;
       --count;
       walks[w] = walks[count];
       rank[w] = rank[count];

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <vector>
 
 namespace explica::correspondence {
@@ -40,31 +39,29 @@ bool onEdge(const Annulus& annulus, std::int32_t n, const std::array<bool, 3>& a
 template <class IsSource>
 std::vector<std::int32_t> nearestOf(const Annulus& annulus, const std::vector<Vector>& places,
                                     const IsSource& isSource) {
-  const auto count = static_cast<std::int32_t>(annulus.count());
-  const auto strides = annulus.strides();
-  std::vector<std::int32_t> nearest(annulus.count(), -1);
-  std::vector<double> distance(annulus.count(), kInfinity);
-  std::deque<std::int32_t> waiting;
-  for (std::int32_t n = 0; n < count; ++n) {
+  const Vector& h = annulus.grid.spacing;
+  std::vector<std::int32_t> nearest(annulus.count(), -1), waiting, next;
+  std::vector<double> squared(annulus.count(), kInfinity);  // distance, mm^2
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(annulus.count()); ++n) {
     if (!isSource(n)) continue;
     nearest[n] = n;
-    distance[n] = 0;
+    squared[n] = 0;
     waiting.push_back(n);
   }
-  while (!waiting.empty()) {
-    const std::int32_t n = waiting.front();
-    waiting.pop_front();
-    const Vector& source = places[nearest[n]];
-    for (int d = 0; d < 6; ++d) {
-      const std::int32_t place =
-          annulus.place[n] + harmonic::signOf(d) * strides[harmonic::axisOf(d)];
-      const std::int32_t m = annulus.numberAt[place];
-      if (m < 0) continue;
-      const double offered = (places[m] - source).norm();
-      if (!(offered < distance[m])) continue;
-      distance[m] = offered;
-      nearest[m] = nearest[n];
-      waiting.push_back(m);
+  for (; !waiting.empty(); waiting.swap(next), next.clear()) {
+    for (const std::int32_t n : waiting) {
+      const Vector way = places[n] - places[nearest[n]];
+      const double here = way.squaredNorm();
+      for (int d = 0; d < 6; ++d) {
+        const std::int32_t m = annulus.links[n][d];
+        if (m < 0) continue;
+        const int a = harmonic::axisOf(d);
+        const double offered = here + h[a] * (h[a] + 2 * harmonic::signOf(d) * way[a]);
+        if (!(offered < squared[m])) continue;
+        squared[m] = offered;
+        nearest[m] = nearest[n];
+        next.push_back(m);
+      }
     }
   }
   return nearest;

@@ -346,6 +346,24 @@ TEST(Correspondence, HoldsForAnisotropicVoxelsAndObliqueAxes) {
   EXPECT_NEAR(e.meanPoint, f.meanPoint, 1e-3);
 }
 
+/// Corners of a face of long voxels are farther apart than those of cubes, and no less alike.
+TEST(Correspondence, InterpolatesOnFacesOfLongVoxelsToo) {
+  const ExactAnnulus exact = harmonic::exactShell(9, 18);
+  const auto followed = [&](const Vector& spacing) {
+    const Vector size = Vector::Constant(40).cwiseQuotient(spacing);
+    const Solved s =
+        solve(exact, harmonic::centredGrid({static_cast<int>(size[0]), static_cast<int>(size[1]),
+                                            static_cast<int>(size[2])},
+                                           spacing));
+    const auto found = findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid));
+    EXPECT_LE(errorsOf(s, found, spacing.minCoeff()).meanThickness, 0.004);
+    return static_cast<double>(found.traced) / (2 * static_cast<double>(s.annulus.count()));
+  };
+  const double ofCubes = followed(Vector::Constant(0.5));
+  EXPECT_LT(followed({0.5, 0.5, 1}), 1.5 * ofCubes);
+  EXPECT_LT(followed({1, 0.5, 0.5}), 1.5 * ofCubes);
+}
+
 TEST(Correspondence, DoesNotDependOnTheNumberOfThreads) {
   for (const Solved& s : {eccentric(), spheroids()}) {
     // A small lambda sends many trajectories past the first face, through several blocks.

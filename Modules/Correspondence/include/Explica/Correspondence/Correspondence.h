@@ -30,19 +30,20 @@ struct CorrespondenceOptions {
   std::optional<double>
       lambda;  ///< mm; of `Hybrid` and `AppendixA`: neighbours' boundary points nearer than this
                ///< are interpolated, others followed; 0 gives the Lagrangian result, infinity
-               ///< follows none beyond a grid face; unset: twice the finest spacing, of
-               ///< `Hybrid` in tissue a few voxels thick 0
+               ///< follows none beyond a grid face; unset: sqrt(2) times the longest diagonal of a
+               ///< grid face, of `Hybrid` in tissue a few voxels thick 0
   TraceOptions trace;
 };
 
 template <class Visitor>
 void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "how boundary points and lengths are found"}, options.method);
-  visit(Field{"lambda", "mm",
-              "hybrid, appendix-a: boundary points of neighbours nearer than this are "
-              "interpolated, others followed; 0 follows all (default: twice the finest voxel size, "
-              "0 in tissue a few voxels thick)"},
-        options.lambda);
+  visit(
+      Field{"lambda", "mm",
+            "hybrid, appendix-a: boundary points of neighbours nearer than this are "
+            "interpolated, others followed; 0 follows all (default: 1.4 times the longest diagonal "
+            "of a grid face, 0 in tissue a few voxels thick)"},
+      options.lambda);
 }
 
 /// Boundary points and lengths of every tissue voxel.
