@@ -66,8 +66,17 @@ constexpr int kGrowthSteps = 6;
 /// crowns and opens closed sulci where it slides vertices far.
 constexpr std::array kRelaxations = {16, 4, 4};
 
-Point stayThere(std::int32_t, const Point& point, const Vector&) {
-  return point;
+/// Whether the voxel around a point is tissue.
+bool isTissue(const harmonic::Annulus& annulus, const Point& point) {
+  const Vector index = annulus.grid.toIndex(point);
+  const auto strides = annulus.strides();
+  std::ptrdiff_t place = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto at = static_cast<int>(std::lround(index[a])) - annulus.first[a];
+    if (at < 0 || at >= annulus.size[a]) return false;
+    place += static_cast<std::ptrdiff_t>(at) * strides[a];
+  }
+  return annulus.numberAt[place] >= 0;
 }
 
 /// From a point towards the zero of a level set along its gradient, as far as `most`, mm; nowhere
@@ -231,6 +240,16 @@ void growSurfaces(const GrowingColumns& ribbon, const RibbonPaths& along, Cortic
   RelaxationOptions relaxation;
   relaxation.most = kRoughness * voxel;
 
+  // Coarse triangles slide out of folds of the ribbon: what does goes back to its trajectory.
+  const auto inRibbon = [&](std::int32_t v, const Point& point, const Vector&) {
+    const harmonic::Annulus& annulus = along.tracer().annulus();
+    const Point middle = ribbon.paths[v].at(0.5 * ribbon.paths[v].length());
+    for (const double back : {0.0, 0.5}) {
+      const Point place = point + back * (middle - point);
+      if (isTissue(annulus, place)) return place;
+    }
+    return middle;
+  };
   Growth growth(result.white.mesh, ribbon.paths);
   for (int step = 1; step <= kGrowthSteps; ++step) {
     monitor.progress(static_cast<double>(step) / (kGrowthSteps + 1), "growing the outer surface");
@@ -239,7 +258,7 @@ void growSurfaces(const GrowingColumns& ribbon, const RibbonPaths& along, Cortic
       for (std::size_t v = 0; v < moves.size(); ++v) {
         result.heldBackMid += growth.missing(v) > kNoShortfall * voxel;
       }
-      result.mid = relaxed(growth.mesh(), edge, moves, stayThere, sliding);
+      result.mid = relaxed(growth.mesh(), edge, moves, inRibbon, sliding);
       keepRoom(result.mid, roomOf(result.white));
     }
   }

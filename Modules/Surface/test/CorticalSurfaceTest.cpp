@@ -863,6 +863,33 @@ TEST(CorticalSurface, HoldsFoldsApart) {
   EXPECT_GT(geometry::enclosedVolume(made.mid), geometry::enclosedVolume(made.white.mesh));
 }
 
+/// Grey matter within 2.5 mm of a ball with twelve folds 8 mm deep, on faces of 3.5 mm.
+TEST(CorticalSurface, TheMiddleOfACoarseMeshStaysInTheRibbonOfFolds) {
+  const Grid grid = lattice(72, Vector::Constant(1));
+  const Volume<Label> white = volumeOf(grid, [&](const Point& p) -> Label {
+    const double across = std::hypot(p.x(), p.y()), r = p.norm() + 1e-9;
+    const double wave = 4 * std::cos(12 * std::atan2(p.y(), p.x())) * across * across / (r * r);
+    return r < 22 + wave ? 3 : 0;
+  });
+  Volume<Label> labels = white;
+  for (std::size_t v = 0; v < white.size(); ++v) {
+    const auto s = grid.subscripts(v);
+    for (int n = 0; n < 125 && white[v] != 0; ++n) {
+      const std::array<int, 3> way = {n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2};
+      if (Vector(way[0], way[1], way[2]).norm() >= 2.5) continue;
+      Label& beside = labels(s[0] + way[0], s[1] + way[1], s[2] + way[2]);
+      beside = beside == 0 ? 2 : beside;
+    }
+  }
+  TissueOptions options;
+  options.preset = LabelPreset::ThreeClass;
+  SurfaceOptions few;
+  few.faces = 1500;
+  const auto made = buildSurfaces(tissueFromLabels(labels, options), few);
+  expectSound(made.mid);
+  EXPECT_LT(made.noRibbon, made.mid.vertexCount() / 100);
+}
+
 TEST(CorticalSurface, RecoversTheBoundaryOfABuriedSulcus) {
   // Two plates of white matter, 5 mm of grey between them and 3 mm around: where the banks face
   // each other the grey matter is 2.5 mm thick, though labels show no fluid between.
