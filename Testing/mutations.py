@@ -42,7 +42,7 @@ ALL = [
     Mutation("Modules/Correspondence/src/Layers.cpp",
              "share[n] = below / (below + above);", "share[n] = above / (below + above);",
              "ExplicaCorrespondenceUnitTests"),
-    Mutation("Modules/Correspondence/src/Field.cpp",
+    Mutation("Modules/Correspondence/src/CornerExtension.cpp",
              "sum.u += u_[from] + outward + 0.5 * second;", "sum.u += u_[from] + outward;",
              "ExplicaCorrespondenceUnitTests"),
     Mutation("Modules/Geometry/src/MeshMeasures.cpp",

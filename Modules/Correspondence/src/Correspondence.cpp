@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Correspondence/Correspondence.h"
 
+#include "Blocks.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Parallel.h"
 #include "Field.h"
+#include "GridFaces.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <thread>
@@ -43,145 +43,6 @@ double defaultLambda(const Annulus& annulus) {
   const auto end = annulus.planar ? h.end() - 1 : h.end();
   std::sort(h.begin(), end);
   return kLambda * std::hypot(end[-1], end[-2]);
-}
-
-/// Tissue in steps of u: those of one step do not depend on each other.
-struct Steps {
-  std::size_t count = 0;
-  std::vector<std::uint16_t> of;  ///< per rank
-};
-
-/// Steps so small that nearly everywhere the first grid face upwind lies in an earlier one: its
-/// corners differ from the voxel by 1/sqrt(3) voxel of the slope or more.
-Steps stepsOf(const Tracer& tracer) {
-  constexpr std::size_t kSamples = 4096;
-  constexpr double kSmallSlopes = 0.05;  // share of voxels that may have smaller slopes
-  constexpr double kStepsPerVoxel = 4;
-  constexpr double kFewest = 64, kMost = 2048;
-  const std::size_t n = tracer.node.size();
-  std::vector<double> slope;
-  for (std::size_t r = 0; r < n; r += 1 + n / kSamples) {
-    slope.push_back(tracer.node[r]
-                        .head<3>()
-                        .matrix()
-                        .cast<double>()
-                        .cwiseProduct(tracer.inverseSpacing)
-                        .norm() *
-                    tracer.finest);
-  }
-  const auto small = nthSmallest(
-      slope, static_cast<std::size_t>(kSmallSlopes * static_cast<double>(slope.size())));
-  const auto count = static_cast<int>(
-      small > 0 ? std::clamp(std::ceil(kStepsPerVoxel / small), kFewest, kMost) : kMost);
-  Steps steps;
-  steps.count = count;
-  steps.of.resize(n);
-  parallelFor(n, kBlock, [&](std::size_t r) {
-    const float u = std::clamp(tracer.node[r][3], 0.0F, 1.0F);
-    const int step = std::min(static_cast<int>(u * static_cast<float>(count)), count - 1);
-    steps.of[r] = static_cast<std::uint16_t>(step);
-  });
-  return steps;
-}
-
-/// Tissue in blocks of space, the blocks and the ranks of each in the order of steps.  What a
-/// trajectory reads on its way to the first grid face lies in its block or beside it: a block's
-/// share of every array fits into a processor's own cache.
-struct Blocks {
-  struct Range {
-    std::int32_t begin = 0, end = 0;  ///< in `rank`
-  };
-  std::vector<std::int32_t> rank;  ///< of one block after the other in space
-  std::vector<Range> ranges;       ///< per block
-
-  [[nodiscard]] std::span<const std::int32_t> of(std::size_t block) const {
-    const Range& range = ranges[block];
-    return {rank.data() + range.begin, rank.data() + range.end};
-  }
-};
-
-/// Sorts ranks by a key below `keys`, equal ones as they were; returns where each key begins.
-template <class KeyOf>
-std::vector<std::int32_t> sortBy(std::span<std::int32_t> ranks, std::size_t keys,
-                                 const KeyOf& keyOf) {
-  std::vector<std::int32_t> start(keys + 1, 0);
-  for (const std::int32_t r : ranks) ++start[keyOf(r) + 1];
-  for (std::size_t k = 0; k < keys; ++k) start[k + 1] += start[k];
-  const std::vector<std::int32_t> before(ranks.begin(), ranks.end());
-  std::vector<std::int32_t> cursor(start.begin(), start.end() - 1);
-  for (const std::int32_t r : before) ranks[cursor[keyOf(r)]++] = r;
-  return start;
-}
-
-Blocks blocksOf(const Tracer& tracer, const Steps& steps) {
-  constexpr std::array<int, 3> kSize = {32, 16, 16};  // voxels
-  const std::array<int, 3>& size = tracer.annulus.size;
-  const int wide = (size[0] + kSize[0] - 1) / kSize[0], high = (size[1] + kSize[1] - 1) / kSize[1];
-  const int slabs = (size[2] + kSize[2] - 1) / kSize[2];
-  const auto columnOf = [&](std::int32_t r) {
-    const std::int32_t row = tracer.placeOf[r] / size[0];
-    const std::int32_t i = tracer.placeOf[r] - row * size[0], j = row % size[1];
-    return i / kSize[0] + wide * (j / kSize[1]);
-  };
-  // Ranks are in storage order, so that those of a slab follow each other.
-  const auto rankAtSlice = [&](int k) {
-    const auto place = static_cast<std::int64_t>(k) * size[0] * size[1];
-    const auto& places = tracer.placeOf;
-    return std::lower_bound(places.begin(), places.end(), place) - places.begin();
-  };
-  Blocks blocks;
-  blocks.rank.resize(tracer.placeOf.size());
-  std::vector<std::vector<Blocks::Range>> bySlab(slabs);
-  parallelFor(slabs, 1, [&](std::size_t slab) {
-    const int slice = static_cast<int>(slab) * kSize[2];
-    const auto begin = static_cast<std::int32_t>(rankAtSlice(slice));
-    const auto end = static_cast<std::int32_t>(rankAtSlice(std::min(slice + kSize[2], size[2])));
-    const std::span ranks(blocks.rank.data() + begin, blocks.rank.data() + end);
-    std::iota(ranks.begin(), ranks.end(), begin);
-    sortBy(ranks, steps.count, [&](std::int32_t r) { return steps.of[r]; });
-    const std::vector<std::int32_t> start =
-        sortBy(ranks, static_cast<std::size_t>(wide) * high, columnOf);
-    for (std::size_t column = 0; column + 1 < start.size(); ++column) {
-      if (start[column] == start[column + 1]) continue;
-      bySlab[slab].push_back({begin + start[column], begin + start[column + 1]});
-    }
-  });
-  for (const auto& ranges : bySlab) {
-    blocks.ranges.insert(blocks.ranges.end(), ranges.begin(), ranges.end());
-  }
-  std::stable_sort(blocks.ranges.begin(), blocks.ranges.end(),
-                   [&](const Blocks::Range& one, const Blocks::Range& two) {
-                     const auto middleStep = [&](const Blocks::Range& range) {
-                       return steps.of[blocks.rank[std::midpoint(range.begin, range.end)]];
-                     };
-                     return middleStep(one) < middleStep(two);
-                   });
-  return blocks;
-}
-
-/// Ranks by ascending u (radix sort of 32-bit fixed point; equal values by rank).
-std::vector<std::int32_t> orderByValue(const Tracer& tracer, const std::vector<double>& u) {
-  const std::size_t n = u.size();
-  std::vector<std::uint32_t> key(n), otherKey(n);
-  std::vector<std::int32_t> order(n), other(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double value = u[tracer.annulus.numberAt[tracer.placeOf[k]]];
-    key[k] = static_cast<std::uint32_t>(std::clamp(value, 0.0, 1.0) * 4294967295.0);
-    order[k] = static_cast<std::int32_t>(k);
-  }
-  for (int shift = 0; shift < 33; shift += 11) {
-    std::vector<std::size_t> start(2049, 0);
-    for (std::size_t k = 0; k < n; ++k) ++start[(key[k] >> shift & 2047) + 1];
-    for (int b = 0; b < 2048; ++b) start[b + 1] += start[b];
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::size_t to = start[key[k] >> shift & 2047]++;
-      otherKey[to] = key[k];
-      other[to] = order[k];
-    }
-    key.swap(otherKey);
-    order.swap(other);
-  }
-  return order;
 }
 
 /// Finds one side's arrivals.
@@ -359,7 +220,7 @@ class Sweep {
   /// Whether a way leads to a grid face whose corners have earlier turns.
   [[nodiscard]] bool isUsable(std::int32_t r, const Arrival& way) const {
     if (std::isnan(way[3])) return false;
-    const std::optional<Face> face = faceAt(axisOf(way), endOf(r, way));
+    const std::optional<Face> face = faces_.at(axisOf(way), endOf(r, way));
     return face && haveEarlierTurns(*face, ownTurn_[r]);
   }
 
@@ -373,14 +234,14 @@ class Sweep {
     };
     const auto passed = [&](std::int32_t r, const Vector& from, double lengthFrom,
                             const Tracer::Walk& walk) {
-      return atFaceBetween(from, walk.x, lengthFrom, walk.length,
-                           [&](int axis, const Vector& x, double length) {
-                             const std::optional<Face> face = faceAt(axis, x);
-                             if (!face || !haveEarlierTurns(*face, ownTurn_[r])) return false;
-                             const Vector way = x - centreOf(r);
-                             arrivals_[r] << way.cast<float>().array(), static_cast<float>(length);
-                             return true;
-                           });
+      return faces_.between(from, walk.x, lengthFrom, walk.length,
+                            [&](int axis, const Vector& x, double length) {
+                              const std::optional<Face> face = faces_.at(axis, x);
+                              if (!face || !haveEarlierTurns(*face, ownTurn_[r])) return false;
+                              const Vector way = x - centreOf(r);
+                              arrivals_[r] << way.cast<float>().array(), static_cast<float>(length);
+                              return true;
+                            });
     };
     const auto ended = [&](std::int32_t r, const Tracer::Walk& walk, bool done) {
       arrivals_[r][3] = static_cast<float>(kNaN);
@@ -509,7 +370,7 @@ class Sweep {
     bool disagreed = false;
     std::int32_t home = annulus_.numberAt[tracer_.placeOf[r]];
     if (!std::isnan(first[3])) {
-      const std::optional<Face> face = faceAt(axisOf(first), endOf(r, first));
+      const std::optional<Face> face = faces_.at(axisOf(first), endOf(r, first));
       if (face && fromFace(r, *face, turn, first[3], disagreed)) return false;
       // Corners that have their turns are not cut off from each other: each tells the side.
       if (face && haveEarlierTurns(*face, turn)) home = annulus_.numberAt[face->place[0]];
@@ -522,77 +383,17 @@ class Sweep {
       done = tracer_.advance(walk, target_, uphill_);
       if (done || walk.stuck) break;
       const auto interpolate = [&](int axis, const Vector& x, double length) {
-        const std::optional<Face> face = faceAt(axis, x);
+        const std::optional<Face> face = faces_.at(axis, x);
         return face && fromFace(r, *face, turn, length, disagreed);
       };
-      if (atFaceBetween(before, walk.x, lengthBefore, walk.length, interpolate)) return disagreed;
+      if (faces_.between(before, walk.x, lengthBefore, walk.length, interpolate)) return disagreed;
     }
     if (done) store(r, walk);
     return true;
   }
 
-  /// Calls at(axis, x, length) for the grid planes between two points at most a voxel apart, in the
-  /// order in which they are met, until it returns true: whether it did.
-  template <class At>
-  bool atFaceBetween(const Vector& from, const Vector& to, double lengthFrom, double lengthTo,
-                     const At& at) const {
-    const Vector step = to - from;
-    struct Pierced {
-      double t;
-      int axis;
-      int plane;
-    };
-    Pierced pierced[3];
-    int count = 0;
-    for (int a = 0; a < (annulus_.planar ? 2 : 3); ++a) {
-      if (std::abs(step[a]) < 1e-12) continue;
-      // The next plane strictly ahead.
-      const int below = static_cast<int>(from[a]);
-      const int ahead = step[a] > 0 ? below + 1 : below - (from[a] == below ? 1 : 0);
-      const double t = (ahead - from[a]) / step[a];
-      if (t > 1) continue;
-      int n = count++;
-      for (; n > 0 && pierced[n - 1].t > t; --n) pierced[n] = pierced[n - 1];
-      pierced[n] = {t, a, ahead};
-    }
-    for (int k = 0; k < count; ++k) {
-      const double t = pierced[k].t;
-      Vector x = from + t * step;
-      x[pierced[k].axis] = pierced[k].plane;
-      if (at(pierced[k].axis, x, lengthFrom + t * (lengthTo - lengthFrom))) return true;
-    }
-    return false;
-  }
-
-  /// A face of the grid between voxel centres, with a place in it.
-  struct Face {
-    int b, c;                 ///< its axes, ascending, so that pairs lie in memory's order
-    std::array<int, 3> base;  ///< first corner
-    std::int32_t place[4];    ///< of its corners, two if planar
-    float fb, fc;             ///< the place, from the first corner
-  };
-
-  /// The face that contains x; nothing beyond the image, which a trajectory may leave.
-  [[nodiscard]] std::optional<Face> faceAt(int axis, const Vector& x) const {
-    Face face;
-    const int b = face.b = axis == 0 ? 1 : 0, c = face.c = axis == 2 ? 1 : 2;
-    face.base[axis] = static_cast<int>(x[axis]);
-    face.base[b] = static_cast<int>(x[b]);
-    face.base[c] = annulus_.planar ? static_cast<int>(std::lround(x[2])) : static_cast<int>(x[c]);
-    if (!inBox(face.base, axis)) return {};
-    face.fb = static_cast<float>(x[b] - face.base[b]);
-    face.fc = annulus_.planar ? 0.0F : static_cast<float>(x[c] - face.base[c]);
-    const auto strides = annulus_.strides();
-    const std::int32_t p = face.base[0] + face.base[1] * strides[1] + face.base[2] * strides[2];
-    for (int e = 0; e < corners(); ++e) {
-      face.place[e] = p + (e & 1) * strides[b] + (e >> 1) * strides[c];
-    }
-    return face;
-  }
-  [[nodiscard]] int corners() const { return annulus_.planar ? 2 : 4; }
-
   [[nodiscard]] bool haveEarlierTurns(const Face& face, std::uint16_t turn) const {
-    return std::all_of(face.place, face.place + corners(), [&](std::int32_t place) {
+    return std::all_of(face.place, face.place + faces_.corners(), [&](std::int32_t place) {
       const std::int32_t m = tracer_.rankAt[place];
       return m >= 0 && turn_[m] < turn;
     });
@@ -602,7 +403,7 @@ class Sweep {
   bool fromFace(std::int32_t r, const Face& face, std::uint16_t turn, double length,
                 bool& disagreed) {
     const auto& [b, c, base, place, fb, fc] = face;
-    const int corners = this->corners();
+    const int corners = faces_.corners();
     const auto strides = annulus_.strides();
     const Arrival* arrival[4];
     for (int e = 0; e < corners; ++e) {
@@ -647,16 +448,6 @@ class Sweep {
     return true;
   }
 
-  /// Whether the grid face at a voxel lies in the box: a trajectory that leaves the image may meet
-  /// faces beyond it.
-  [[nodiscard]] bool inBox(const std::array<int, 3>& base, int axis) const {
-    for (int a = 0; a < 3; ++a) {
-      const int reach = a == axis || (annulus_.planar && a == 2) ? 0 : 1;
-      if (base[a] < 0 || base[a] + reach >= annulus_.size[a]) return false;
-    }
-    return true;
-  }
-
   /// Arrival at a box voxel with an earlier turn; null otherwise.
   [[nodiscard]] const Arrival* earlier(std::int32_t place, std::uint16_t turn) {
     const std::int32_t m = tracer_.rankAt[place];
@@ -692,6 +483,7 @@ class Sweep {
 
   const Tracer& tracer_;
   const Annulus& annulus_;
+  GridFaces faces_{annulus_};
   bool appendixA_, inner_;
   int uphill_;
   double target_;
@@ -788,71 +580,6 @@ Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& in
                                  return sum;
                                });
   return result;
-}
-
-std::vector<double> thicknessOf(const Correspondence& correspondence) {
-  std::vector<double> thickness(correspondence.innerDistance.size());
-  parallelFor(thickness.size(), 1 << 14,
-              [&](std::size_t n) { thickness[n] = correspondence.thickness(n); });
-  return thickness;
-}
-
-std::optional<double> thicknessAt(const Annulus& annulus, const Correspondence& correspondence,
-                                  const Point& point) {
-  constexpr double kEnough = 0.25;  // of the weight
-  const Vector index = annulus.grid.toIndex(point);
-  const auto strides = annulus.strides();
-  double sum = 0, weights = 0;
-  for (int c = 0; c < 8; ++c) {
-    double weight = 1;
-    std::ptrdiff_t place = 0;
-    bool within = true;
-    for (int a = 0; a < 3; ++a) {
-      const double low = std::floor(index[a]), upper = index[a] - low;
-      const int at = static_cast<int>(low) + (c >> a & 1) - annulus.first[a];
-      within = within && at >= 0 && at < annulus.size[a];
-      weight *= (c >> a & 1) ? upper : 1 - upper;
-      place += static_cast<std::ptrdiff_t>(at) * strides[a];
-    }
-    const std::int32_t n = within ? annulus.numberAt[place] : -1;
-    if (n < 0 || std::isnan(correspondence.thickness(n))) continue;
-    sum += weight * correspondence.thickness(n);
-    weights += weight;
-  }
-  if (!(weights > kEnough)) return {};
-  return sum / weights;
-}
-
-double columnWeight(const Correspondence& correspondence, std::size_t n) {
-  const double thickness = correspondence.thickness(n);
-  if (!(thickness > 0)) return 0;
-  return 4 * std::min(correspondence.innerDistance[n], correspondence.outerDistance[n]) /
-         (thickness * thickness);
-}
-
-ThicknessSummary summaryOf(const Correspondence& correspondence) {
-  std::vector<double> known = thicknessOf(correspondence);
-  double sum = 0, weighted = 0, weights = 0;
-  for (std::size_t n = 0; n < known.size(); ++n) {
-    if (!(known[n] > 0)) continue;
-    const double weight = columnWeight(correspondence, n);
-    sum += known[n];
-    weighted += weight * known[n];
-    weights += weight;
-  }
-  std::erase_if(known, [](double t) { return !(t > 0); });
-  ThicknessSummary summary;
-  if (known.empty()) return summary;
-  summary.meanOfVoxels = sum / static_cast<double>(known.size());
-  summary.mean = weights > 0 ? weighted / weights : kNaN;
-  const auto quantile = [&](double q) {
-    return nthSmallest(
-        known, static_cast<std::size_t>(std::lround(q * static_cast<double>(known.size() - 1))));
-  };
-  summary.median = quantile(0.5);
-  summary.p05 = quantile(0.05);
-  summary.p95 = quantile(0.95);
-  return summary;
 }
 
 }  // namespace explica::correspondence
