@@ -8,16 +8,16 @@ namespace {
 
 /// Strands of the regular voxels [begin, end).
 std::vector<Strand> strandsOf(const Annulus& annulus, std::int32_t begin, std::int32_t end) {
-  constexpr std::size_t kGrain = 1 << 14;  // voxels a task; a strand ends with its task's voxels
+  constexpr std::size_t kStrandVoxels = 1 << 14;  // a task; a strand ends with its task's voxels
   const auto follows = [&](std::int32_t n) {
     bool next = true;
     for (int d = 0; d < 6; ++d) next &= annulus.links[n][d] == annulus.links[n - 1][d] + 1;
     return next;
   };
   const std::size_t count = end - begin;
-  std::vector<std::vector<Strand>> parts((count + kGrain - 1) / kGrain);
-  parallelForBlocks(count, kGrain, [&](std::size_t first, std::size_t last) {
-    std::vector<Strand>& part = parts[first / kGrain];
+  std::vector<std::vector<Strand>> parts((count + kStrandVoxels - 1) / kStrandVoxels);
+  parallelForBlocks(count, kStrandVoxels, [&](std::size_t first, std::size_t last) {
+    std::vector<Strand>& part = parts[first / kStrandVoxels];
     for (std::size_t k = first; k < last; ++k) {
       const auto n = static_cast<std::int32_t>(begin + k);
       if (k == first || !follows(n)) part.push_back({n, 0, annulus.links[n]});
