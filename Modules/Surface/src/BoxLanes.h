@@ -11,6 +11,11 @@ namespace explica::surface {
 /// Least and greatest coordinates: x, y, z of the low corner, then of the high one.
 using Box = std::array<float, 6>;
 
+inline bool contains(const Box& outer, const Box& inner) {
+  return outer[0] <= inner[0] && outer[1] <= inner[1] && outer[2] <= inner[2] &&
+         inner[3] <= outer[3] && inner[4] <= outer[4] && inner[5] <= outer[5];
+}
+
 /// Four boxes that are compared with a fifth at once.
 class BoxLanes {
  public:
