@@ -213,7 +213,11 @@ Termination run(Context& context, const HeartSettings& s) {
       readImages(s.images, s.reading, frames.front().grid, frames.size());
   const int stack = stackSlicesLast(s, frames, images);
   const ventricle::HeartRoles roles = ventricle::findRoles(frames, s.labels);
-  for (Volume<Label>& frame : frames) frame = ventricle::relabelled(frame, roles);
+  std::int64_t islands = 0;
+  for (Volume<Label>& frame : frames) {
+    frame = ventricle::relabelled(frame, roles);
+    islands += ventricle::takeOutIslands(frame);
+  }
   const Chosen chosen = chooseFrames(s.frames, frames);
   std::vector<Volume<Label>> hearts;
   std::vector<Volume<float>> shown;
@@ -228,7 +232,7 @@ Termination run(Context& context, const HeartSettings& s) {
                                   context.monitor());
   }
   sayWhatIsOdd(context, beat);
-  context.results(ventricle::HeartSummary{roles.how, &beat, judgeOpening(context, beat)});
+  context.results(ventricle::HeartSummary{roles.how, &beat, judgeOpening(context, beat), islands});
   auto step = context.step("write");
   writeOutputs(context, beat, shown, stack);
   return Termination::Finished;

@@ -59,6 +59,12 @@ void writeMaps(const fs::path& path, const std::vector<Eigen::VectorXd>& thickne
 
 void describe(Results& t, const Change& r) {
   t.count("sessions", "Sessions", "Images of the same person.", r.sessions).inHead();
+  t.number("session_voxels", "Voxel sizes of the sessions, largest ratio", "",
+           "Of shortest, middle or longest edge between any two.", r.voxels)
+      .atMost(
+          1.1, Judgement::Look,
+          "coarser voxels move the borders of thin tissue: 1 x 1 x 1.5 mm after 1 mm of the same "
+          "image is -0.07 mm");
   t.number("session_correlation", "Correlation of a session with the first", "",
            "Of brightness within the head, both resampled halfway; the least.", r.correlation)
       .atLeast(0.8, Judgement::Doubt,

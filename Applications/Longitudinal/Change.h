@@ -12,7 +12,8 @@ namespace explica::app {
 /// Sessions in a common space and what changed between the first and the last, in numbers.
 struct Change {
   std::int64_t sessions = 0;
-  double correlation = kNaN, turn = kNaN, mean = kNaN, deviation = kNaN, known = kNaN;
+  double voxels = kNaN, correlation = kNaN, turn = kNaN;
+  double mean = kNaN, deviation = kNaN, known = kNaN;
 };
 
 void describe(Results& t, const Change& r);

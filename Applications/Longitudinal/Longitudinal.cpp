@@ -122,6 +122,18 @@ void writeAtlas(Context& context, const Volume<Label>& atlas, const std::string&
   }
 }
 
+/// Largest ratio between two sessions' voxels, edges compared by length.
+double voxelRatio(const std::vector<Volume<float>>& sessions) {
+  Vector least = Vector::Constant(kInfinity), most = Vector::Zero();
+  for (const Volume<float>& session : sessions) {
+    Vector edges = session.grid.spacing;
+    std::sort(edges.begin(), edges.end());
+    least = least.cwiseMin(edges);
+    most = most.cwiseMax(edges);
+  }
+  return most.cwiseQuotient(least).maxCoeff();
+}
+
 /// @return the voxels' size, mm
 double writeCommonSpace(Context& context, const LongitudinalSettings& s,
                         const std::vector<Volume<float>>& sessions,
@@ -129,6 +141,7 @@ double writeCommonSpace(Context& context, const LongitudinalSettings& s,
   const auto average = registration::averageSessions(sessions, context.monitor());
   io::writeVolume(context.output("template.nii.gz"), average.mean);
   change.sessions = static_cast<std::int64_t>(sessions.size());
+  change.voxels = voxelRatio(sessions);
   change.correlation = average.leastCorrelation;
   change.turn = 0;
   for (std::size_t n = 0; n < sessions.size(); ++n) {

@@ -318,9 +318,6 @@ class Longitudinal : public ::testing::Test {
     io::writeVolume(folder_ / (name + ".nii.gz"), image);
   }
 
-  TemporaryFolder folder_;
-
- private:
   void writeRegions() {
     const Volume<Label> labels = io::readLabels(folder_ / "first/labels.nii.gz").volume;
     Volume<Label> atlas(labels.grid, 0);
@@ -334,6 +331,8 @@ class Longitudinal : public ::testing::Test {
         << "1 Occipital_Inf_L\n2 Occipital_Inf_R\n3 Frontal_Inf_L\n4 Frontal_Inf_R\n"
            "5 Occipital_Sup_L\n6 Occipital_Sup_R\n7 Frontal_Sup_L\n8 Frontal_Sup_R\n";
   }
+
+  TemporaryFolder folder_;
 };
 
 TEST_F(Longitudinal, FindsTheThinningOfAPhantom) {
@@ -352,6 +351,35 @@ TEST_F(Longitudinal, FindsNoChangeWhereThereIsNone) {
   double squares = 0;
   for (const double change : changes()) squares += change * change / 4;
   EXPECT_LT(std::sqrt(squares), 0.04);
+}
+
+TEST_F(Longitudinal, SessionsOfDifferentVoxelsAreToBeLookedAt) {
+  write("first", "2.5", "1", Eigen::Isometry3d::Identity());
+  const Volume<float> fine = io::readScalars(folder_ / "first.nii.gz").volume;
+  Grid thick = fine.grid;
+  thick.size[2] /= 2;
+  thick.spacing[2] *= 2;
+  thick.origin = fine.grid.toWorld(Vector(0, 0, 0.5));
+  Volume<float> slices(thick);
+  for (std::size_t v = 0; v < slices.size(); ++v) {
+    const auto [i, j, k] = slices.grid.subscripts(v);
+    slices[v] = (fine(i, j, 2 * k) + fine(i, j, 2 * k + 1)) / 2;
+  }
+  io::writeVolume(folder_ / "second.nii.gz", slices);
+  writeRegions();
+  const auto result =
+      explica({"longitudinal", folder_ / "first.nii.gz", folder_ / "second.nii.gz", "--atlas",
+               folder_ / "atlas.nii.gz", "--hemisphere", "L", "--template", "none",
+               "--surface.faces", "3000", "--out", folder_ / "out"});
+  EXPECT_EQ(result.exitCode, 3) << result;
+  const Json summary = readJson(folder_ / "out/summary.json");
+  EXPECT_EQ(summary["session_voxels"], 2);
+  EXPECT_NE(summary["reasons"].dump().find("Voxel sizes of the sessions"), std::string::npos);
+  // Its page has the doubts of the runs within it.
+  ASSERT_EQ(explica({"report", folder_ / "out", "--out", folder_ / "page"}).exitCode, 0);
+  const std::string page = readText(folder_ / "page/report.html");
+  EXPECT_NE(page.find("skull or neck may be left in the brain"), std::string::npos);
+  EXPECT_EQ(page.find("stopped: finished"), std::string::npos);
 }
 
 TEST_F(Longitudinal, OfOneSessionIsRefused) {

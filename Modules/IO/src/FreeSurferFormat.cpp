@@ -394,9 +394,10 @@ void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorX
 }
 
 void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& labels) {
+  std::vector<LabelEntry> table = labels.table;
   std::map<Label, std::uint32_t> colourOf;
   std::set<std::uint32_t> used;
-  for (const LabelEntry& entry : labels.table) {
+  for (const LabelEntry& entry : table) {
     const std::uint32_t colour = packed(entry);
     if (!used.insert(colour).second) {
       throw InvalidInput(
@@ -405,6 +406,8 @@ void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& lab
     }
     colourOf[entry.key] = colour;
   }
+  // What a file's table lacked is without an entry again: the colour 0.
+  std::erase_if(table, [](const LabelEntry& entry) { return entry.key < 0 && packed(entry) == 0; });
   Bytes bytes;
   append(bytes, static_cast<std::int32_t>(labels.keys.size()), true);
   for (Eigen::Index v = 0; v < labels.keys.size(); ++v) {
@@ -421,15 +424,15 @@ void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& lab
     appendText(bytes, word);
     bytes.push_back(0);
   };
-  Label largest = 0;
-  for (const LabelEntry& entry : labels.table) largest = std::max(largest, entry.key);
+  const auto count = static_cast<std::int32_t>(table.size());
   append(bytes, std::int32_t{1}, true);
   append(bytes, std::int32_t{-2}, true);
-  append(bytes, largest + 1, true);
+  append(bytes, count, true);
   text("Explica");
-  append(bytes, static_cast<std::int32_t>(labels.table.size()), true);
-  for (const LabelEntry& entry : labels.table) {
-    append(bytes, entry.key, true);
+  append(bytes, count, true);
+  for (std::int32_t e = 0; e < count; ++e) {
+    const LabelEntry& entry = table[static_cast<std::size_t>(e)];
+    append(bytes, e, true);
     text(entry.name);
     const std::uint32_t colour = packed(entry);
     for (int c = 0; c < 3; ++c) {

@@ -107,12 +107,22 @@ void expectSameLabels(const io::LabelMap& read, const io::LabelMap& written) {
   }
 }
 
-TEST(VertexLabels, GiftiAndAnnotKeepKeysNamesAndColours) {
+TEST(VertexLabels, GiftiKeepsKeysNamesAndColours) {
   const TemporaryFolder folder;
   io::writeGiftiLabel(folder / "a.label.gii", someLabels(), "CortexLeft");
   expectSameLabels(io::readVertexLabels(folder / "a.label.gii", 5), someLabels());
-  io::writeFreeSurferAnnot(folder / "lh.parts.annot", someLabels());
-  expectSameLabels(io::readVertexLabels(folder / "lh.parts.annot", 5), someLabels());
+}
+
+TEST(VertexLabels, AnnotNumbersTheNamesFromZeroOnAndWritesNoVertexWithoutOne) {
+  const TemporaryFolder folder;
+  io::LabelMap labels = someLabels();
+  labels.table.front() = {-1, "none", {0, 0, 0, 0}};
+  labels.keys << -1, 7, 7, 2, -1;
+  io::writeFreeSurferAnnot(folder / "lh.parts.annot", labels);
+  labels.keys << -1, 1, 1, 0, -1;  // nibabel takes keys for places in the list of names
+  labels.table[1].key = 0;
+  labels.table[2].key = 1;
+  expectSameLabels(io::readVertexLabels(folder / "lh.parts.annot", 5), labels);
 }
 
 TEST(VertexLabels, AListOfVerticesNeedsTheirNumber) {

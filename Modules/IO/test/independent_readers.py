@@ -143,7 +143,7 @@ def our_surfaces(folder):
     assert np.array_equal(curv, values.astype("f4"))
     labels, table, names = nib.freesurfer.read_annot(folder / "lh.parts.annot", orig_ids=False)
     # The colour 0 of "outside" means "no label" in this format, which nibabel gives as -1.
-    assert np.array_equal(labels, np.where(keys == 3, 3, -1)), labels
+    assert np.array_equal(labels, np.where(keys == 3, 1, -1)), labels  # places in the list of names
     assert names == [b"outside", b"in & out"], names
     listed = nib.freesurfer.read_label(folder / "lh.part.label")
     assert np.array_equal(np.sort(listed), np.flatnonzero(keys))

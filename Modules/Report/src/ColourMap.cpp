@@ -119,7 +119,7 @@ Colour colourOfLabel(Label label) {
                                                                         {213, 94, 0},
                                                                         {204, 121, 167},
                                                                         {90, 90, 90}}};
-  if (label == 0) return {0.62f, 0.62f, 0.62f};
+  if (label <= 0) return {0.62f, 0.62f, 0.62f};
   const auto index = static_cast<std::uint32_t>(label) - 1u;
   const auto& hue = kHues[index % kHues.size()];
   const std::array<float, 4> lightness = {1.0f, 0.55f, 0.3f, 0.78f};

@@ -266,6 +266,7 @@ TEST(LabelColours, AreTheTablesOwnWhereItHasAny) {
   EXPECT_EQ(encodeSrgb(own[0]), 60);
   EXPECT_EQ(encodeSrgb(own[2]), 220);
   EXPECT_EQ(colourOfLabel(3, {0, 0, 0, 0}), colourOfLabel(3));
+  EXPECT_EQ(colourOfLabel(-1), colourOfLabel(0));  // an annotation's vertices without a region
 }
 
 /// A plane of two halves, painted plainly.

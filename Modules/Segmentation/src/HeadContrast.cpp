@@ -127,6 +127,14 @@ float countFromAir(Volume<float>& image) {
       judge("hounsfield", airInHounsfieldUnits(image), {})) {
     return 0;
   }
+  // Around a stripped brain air is 0, also where an interpolation has made it a little less.
+  const float little = 1e-3f * std::max(0.0f, quantileOf(image.data, 0.99));
+  const auto dark = [&](float value) { return value < -little; };
+  const auto none = [&](float value) { return std::abs(value) <= little; };
+  if (std::ranges::count_if(image.data, none) > std::ranges::count_if(image.data, dark)) {
+    for (float& value : image.data) value = value > little ? value : 0;
+    return 0;
+  }
   const float lift = -std::min(0.0f, quantileOf(image.data, kDarkest));
   for (float& value : image.data) value = std::max(0.0f, value + lift);
   return lift;

@@ -94,5 +94,17 @@ TEST(CountFromAir, IsWhatTheDarkestHundredthIsButInACt) {
   EXPECT_EQ(ct[0], -1000);
 }
 
+TEST(CountFromAir, IsZeroAroundAStrippedBrainThatWasInterpolated) {
+  Grid grid;
+  grid.size = {10, 10, 10};
+  Volume<float> image(grid, 0.0f);
+  for (std::size_t v = 0; v < 200; ++v) image[v] = 100;
+  for (std::size_t v = 200; v < 250; ++v) image[v] = -4;  // its undershoots
+  for (std::size_t v = 250; v < 500; ++v) image[v] = v % 2 == 0 ? 1e-5f : -1e-5f;
+  EXPECT_EQ(countFromAir(image), 0);
+  EXPECT_EQ(image[100], 100);
+  for (const std::size_t outside : {220, 300, 301, 900}) EXPECT_EQ(image[outside], 0) << outside;
+}
+
 }  // namespace
 }  // namespace explica::segmentation

@@ -36,9 +36,15 @@ bool isFreeSurfers(const SubjectFiles& files) {
          (files.labels && files.labels->filename().string().find("_desc-a") != std::string::npos);
 }
 
-Participant participantIn(const fs::path& dataset, const fs::path& folder,
+/// FreeSurfer's work on a session, or on the person, if there are not several to tell apart.
+fs::path freeSurferOf(const fs::path& dataset, const Participant& participant, bool several) {
+  const fs::path subjects = dataset / "sourcedata" / "freesurfer";
+  const fs::path own = subjects / participant.name();
+  return several || isThere(own) ? own : subjects / ("sub-" + participant.label);
+}
+
+Participant participantIn(const fs::path& freeSurfer, const fs::path& folder,
                           Participant participant) {
-  const fs::path freeSurfer = dataset / "sourcedata" / "freesurfer" / ("sub-" + participant.label);
   std::string whyNotFreeSurfer;
   std::optional<SubjectFiles> made;
   if (isThere(freeSurfer)) made = lookInto(freeSurfer, whyNotFreeSurfer);
@@ -80,13 +86,17 @@ std::vector<Participant> findParticipants(const fs::path& dataset,
     };
     if (!labels.empty() && std::ranges::none_of(labels, wanted)) continue;
     std::vector<fs::path> sessions = foldersFrom(folder, "ses-");
-    // Of function or diffusion alone there is nothing to be measured.
-    const auto lacksAnat = [](const fs::path& session) { return !isFolder(session / "anat"); };
-    if (!std::ranges::all_of(sessions, lacksAnat)) std::erase_if(sessions, lacksAnat);
-    if (sessions.empty()) participants.push_back(participantIn(dataset, folder, participant));
+    // Of function or diffusion alone there is nothing to be measured.  What fMRIPrep made of all
+    // sessions' T1s lies above them.
+    std::erase_if(sessions, [](const fs::path& session) { return !isFolder(session / "anat"); });
+    const auto add = [&](const fs::path& place) {
+      const fs::path freeSurfer = freeSurferOf(dataset, participant, sessions.size() > 1);
+      participants.push_back(participantIn(freeSurfer, place, participant));
+    };
+    if (sessions.empty()) add(folder);
     for (const fs::path& session : sessions) {
       participant.session = session.filename().string().substr(4);
-      participants.push_back(participantIn(dataset, session, participant));
+      add(session);
     }
   }
   for (std::string label : labels) {

@@ -76,8 +76,39 @@ TEST_F(Study, ASessionWithoutAnatomyIsNoFailureBesideOthersWithIt) {
   const auto found = findParticipants(folder_);
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].name(), "sub-01_ses-a");
-  EXPECT_EQ(found[1].name(), "sub-02_ses-a");
+  EXPECT_EQ(found[1].name(), "sub-02");
   EXPECT_NE(found[1].problem, "");
+}
+
+TEST_F(Study, WhatWasMadeOfAllSessionsIsOnePersons) {
+  put("dataset_description.json");
+  put("sub-01/anat/sub-01_desc-aseg_dseg.nii.gz");
+  put("sub-01/ses-a/func/sub-01_ses-a_task-rest_bold.nii.gz");
+  put("sub-01/ses-b/func/sub-01_ses-b_task-rest_bold.nii.gz");
+  put("sub-02/ses-a/func/sub-02_ses-a_task-rest_bold.nii.gz");
+  put("sourcedata/freesurfer/sub-02/mri/ribbon.mgz");
+  const auto found = findParticipants(folder_);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].name(), "sub-01");
+  EXPECT_EQ(found[0].input, folder_ / "sub-01/anat");
+  EXPECT_EQ(found[1].name(), "sub-02");
+  EXPECT_EQ(found[1].input, folder_ / "sourcedata/freesurfer/sub-02");
+}
+
+TEST_F(Study, SessionsDoNotShareAPersonsFreeSurferSubject) {
+  put("dataset_description.json");
+  for (const char* session : {"sub-01/ses-a/anat/sub-01_ses-a", "sub-01/ses-b/anat/sub-01_ses-b",
+                              "sub-02/ses-a/anat/sub-02_ses-a"}) {
+    put(std::string(session) + "_T1w.nii.gz");
+  }
+  for (const char* made : {"sub-01", "sub-01_ses-b", "sub-02"}) {
+    put("sourcedata/freesurfer/" + std::string(made) + "/mri/ribbon.mgz");
+  }
+  const auto found = findParticipants(folder_);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].input, folder_ / "sub-01/ses-a/anat");
+  EXPECT_EQ(found[1].input, folder_ / "sourcedata/freesurfer/sub-01_ses-b");
+  EXPECT_EQ(found[2].input, folder_ / "sourcedata/freesurfer/sub-02");
 }
 
 TEST_F(Study, OfSeveralImagesTheFirstWithoutContrastAgentIsUsedAndNamed) {

@@ -4,6 +4,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <algorithm>
 #include <set>
@@ -144,6 +145,24 @@ Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles) {
     if (roles.right && label == *roles.right) heart[v] = kRight;
   });
   return heart;
+}
+
+std::int64_t takeOutIslands(Volume<Label>& heart) {
+  if (std::ranges::find(heart.data, kWall) == heart.data.end()) return 0;
+  VoxelSet left(heart.grid, 0);
+  for (std::size_t v = 0; v < heart.size(); ++v) left[v] = heart[v] == kCavity || heart[v] == kWall;
+  const Components pieces = componentsOf(left);
+  std::vector<bool> hasCavity(pieces.size.size()), hasWall(pieces.size.size());
+  for (std::size_t v = 0; v < heart.size(); ++v) {
+    if (left[v]) (heart[v] == kWall ? hasWall : hasCavity)[pieces.number[v]] = true;
+  }
+  std::int64_t taken = 0;
+  for (std::size_t v = 0; v < heart.size(); ++v) {
+    if (!left[v] || (hasCavity[pieces.number[v]] && hasWall[pieces.number[v]])) continue;
+    heart[v] = kOutside;
+    ++taken;
+  }
+  return taken;
 }
 
 }  // namespace explica::ventricle

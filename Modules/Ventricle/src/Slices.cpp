@@ -3,6 +3,9 @@
 #include "Explica/Ventricle/Slices.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
+
+#include <numeric>
 
 namespace explica::ventricle {
 
@@ -78,6 +81,28 @@ std::int64_t missingSlices(const Volume<Label>& heart) {
     }
   }
   return missing;
+}
+
+std::int64_t enclosedVoxels(const Volume<Label>& heart) {
+  Grid plane = heart.grid;
+  plane.size[2] = 1;
+  std::int64_t enclosed = 0;
+  for (int k = 0; k < heart.grid.size[2]; ++k) {
+    VoxelSet rest(plane, 0);
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+      const Label label = heart[v + static_cast<std::size_t>(k) * rest.size()];
+      rest[v] = label != kCavity && label != kWall;
+    }
+    const Components pieces = componentsOf(rest);
+    std::vector<std::int64_t> inside = pieces.size;
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+      const auto [i, j, _] = plane.subscripts(v);
+      const bool atEdge = i == 0 || j == 0 || i + 1 == plane.size[0] || j + 1 == plane.size[1];
+      if (rest[v] && atEdge) inside[pieces.number[v]] = 0;
+    }
+    enclosed += std::accumulate(inside.begin(), inside.end(), std::int64_t{0});
+  }
+  return enclosed;
 }
 
 double openShareOf(const Volume<Label>& heart) {

@@ -96,11 +96,20 @@ void describe(Results& t, const HeartSummary& s) {
   t.count("frames_with_wall", "Frames with a wall", "",
           std::count_if(beat.frames.begin(), beat.frames.end(),
                         [](const Frame& f) { return f.segments.has_value(); }));
-  std::int64_t missing = 0;
-  for (const Frame& frame : beat.frames) missing += missingSlices(frame.heart);
+  std::int64_t missing = 0, enclosed = 0;
+  for (const Frame& frame : beat.frames) {
+    missing += missingSlices(frame.heart);
+    enclosed += enclosedVoxels(frame.heart);
+  }
   t.count("slices_missing", "Slices without labels between others",
           "Of all frames: without cavity or wall between slices that have both.", missing)
       .atMost(0, Judgement::Look, "volumes and mass are too small then");
+  t.count("voxels_enclosed", "Voxels without a label within the ventricle",
+          "Of all frames: enclosed in their slice, as papillary muscles may be.", enclosed)
+      .atMost(0, Judgement::Look, "the ring counts as open there: give them the cavity's label");
+  t.count("voxels_apart", "Voxels apart from the ventricle",
+          "Of all frames: pieces without cavity or without wall, which are left out.", s.islands)
+      .atMost(0, Judgement::Look, "a label is wrong there");
   t.count("frame_ed", "Frame at end-diastole", "", ed.number);
   t.count("frame_es", "Frame at end-systole", "",
           beats ? std::optional<std::int64_t>(es.number) : std::nullopt);

@@ -353,6 +353,18 @@ TEST(Slices, CountsThoseWithoutLabelsBetweenOthers) {
   }
 }
 
+TEST(Slices, CountsVoxelsThatCavityAndWallEnclose) {
+  Volume<Label> heart =
+      phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8}).frames[0].labels;
+  EXPECT_EQ(enclosedVoxels(heart), 0);
+  const int middle = heart.grid.size[2] / 2;
+  const Eigen::Vector2d centre = slicesOf(heart)[static_cast<std::size_t>(middle)].centre / 1.4;
+  const int i = static_cast<int>(centre.x()), j = static_cast<int>(centre.y());
+  ASSERT_EQ(heart(i, j, middle), kCavity);
+  heart(i, j, middle) = heart(i + 1, j, middle) = kOutside;
+  EXPECT_EQ(enclosedVoxels(heart), 2);
+}
+
 TEST(Beat, RefusesFramesOfDifferentGrids) {
   const auto a = phantom::beatingVentricle({90, 1.4}, {.frames = 1, .slice = 8});
   const auto b = phantom::beatingVentricle({92, 1.4}, {.frames = 1, .slice = 8});

@@ -34,6 +34,18 @@ TEST(HeartLabels, TheEnclosedLabelTellsTheConvention) {
   EXPECT_EQ(findRoles({renamed(mms, 1, 2, 0), renamed(mms, 1, 0, 0)}).cavity, 1);
 }
 
+TEST(HeartLabels, PiecesApartFromTheVentricleAreTakenOut) {
+  const Volume<Label> whole = heart();
+  Volume<Label> stray = whole;
+  const int middle = whole.grid.size[2] / 2;
+  stray(0, 0, middle) = stray(1, 0, middle) = kCavity;
+  stray(0, 5, middle) = kWall;
+  EXPECT_EQ(takeOutIslands(stray), 3);
+  EXPECT_EQ(stray.data, whole.data);
+  Volume<Label> cavityAlone = renamed(whole, kCavity, kOutside, kRight);
+  EXPECT_EQ(takeOutIslands(cavityAlone), 0);
+}
+
 TEST(HeartLabels, PresetsAndNumbersOverrideIt) {
   const Volume<Label> mms = heart();
   EXPECT_EQ(findRoles({mms}, {.preset = Preset::Acdc}).cavity, 3);

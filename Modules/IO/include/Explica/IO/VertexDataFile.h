@@ -100,7 +100,8 @@ void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
 void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorXd& values,
                          Eigen::Index faceCount);
 
-/// Writes FreeSurfer's annot format with its colour table; keys index the table's order.
+/// Writes FreeSurfer's annot format with its colour table; keys become places in the table, as
+/// nibabel takes them.  Negative ones of no colour are vertices without a label.
 void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& labels);
 
 }  // namespace explica::io

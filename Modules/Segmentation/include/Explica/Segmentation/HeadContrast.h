@@ -22,7 +22,8 @@ struct HeadContrast {
 [[nodiscard]] HeadContrast measureContrast(const Volume<float>& image);
 
 /// Brightness counts from that of air: where an image's darkest hundredth is below 0, as in one
-/// scaled to mean 0 and deviation 1, it becomes 0, and so does what is darker.  A CT stays.
+/// scaled to mean 0 and deviation 1, it becomes 0, and so does what is darker.  Where more is about
+/// 0 than below, as around a stripped brain, air is 0 already.  A CT stays.
 /// @return what was added
 float countFromAir(Volume<float>& image);
 

@@ -64,4 +64,9 @@ struct HeartRoles {
 /// A frame with this module's labels; what has no role is outside.
 [[nodiscard]] Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles);
 
+/// Pieces of the left ventricle that lack cavity or wall and touch no piece with both become
+/// outside: one voxel of cavity far away would open its slice.  A frame without wall stays.
+/// @return their voxels
+std::int64_t takeOutIslands(Volume<Label>& heart);
+
 }  // namespace explica::ventricle

@@ -55,6 +55,11 @@ inline constexpr double kValveShare = 0.3;
 /// @param heart  with this module's labels
 [[nodiscard]] std::int64_t missingSlices(const Volume<Label>& heart);
 
+/// Voxels without a role that cavity and wall enclose within their slice, as papillary muscles that
+/// nobody labelled: the cavity counts as open there.
+/// @param heart  with this module's labels
+[[nodiscard]] std::int64_t enclosedVoxels(const Volume<Label>& heart);
+
 /// Share of the cavity's outer area, by voxel faces, that touches no wall: the base of a ventricle
 /// and its openings; beyond the image counts as open.  0 of a closed shell, which is no ventricle.
 /// @param heart  with this module's labels

@@ -12,6 +12,7 @@ struct HeartSummary {
   std::string labels;          ///< which convention
   const Beat* beat = nullptr;  ///< must outlive this
   double openShare = kNaN;     ///< of the cavity's surface at end-diastole
+  std::int64_t islands = 0;    ///< voxels that takeOutIslands() took
 };
 
 void describe(Results& t, const HeartSummary& s);
