@@ -27,7 +27,7 @@ namespace {
 constexpr double kLeastHeight = 0.1;
 const std::int64_t kUsualFaces = SurfaceOptions().faces;
 /// By which share the edges of a mesh that serves may be longer or shorter.
-constexpr double kNear = 0.1;
+constexpr double kAboutAsFine = 0.1;
 
 /// Height of a triangle over its longest edge.
 double heightOf(const Point& a, const Point& b, const Point& c) {
@@ -94,7 +94,7 @@ std::optional<WhiteSurface> whereImageIsAsked(const WhiteSurface& white) {
   const double voxel = voxelSize(white.level.grid);
   const double area = geometry::totalArea(white.mesh), usual = edgeFor(area, kUsualFaces);
   const double own = edgeFor(area, white.mesh.faceCount());
-  if (std::abs(own / std::max(voxel, usual) - 1) <= kNear) return {};
+  if (std::abs(own / std::max(voxel, usual) - 1) <= kAboutAsFine) return {};
   const TriangleMesh raw = geometry::extractIsoSurface(white.level);
   const double voxels = geometry::totalArea(raw) / (voxel * voxel);
   const double shortest = 4 / std::sqrt(3.0) * voxels;  // faces whose edges are a voxel

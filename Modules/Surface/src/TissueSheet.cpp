@@ -199,10 +199,10 @@ std::vector<std::uint8_t> bareFaces(const TriangleMesh& mesh, const SheetLevel& 
 
 /// True if a point lies on the edge of the image: among the centres of its outermost voxels.
 bool onImageEdge(const Grid& image, const Point& point) {
-  constexpr double kNear = 0.3;  // voxels, as far as remeshing may have rounded a rim
+  constexpr double kRounded = 0.3;  // voxels, as far as remeshing may have rounded a rim
   const Vector index = image.toIndex(point);
   for (int a = 0; a < 3; ++a) {
-    if (index[a] < kNear || index[a] > image.size[a] - 1 - kNear) return true;
+    if (index[a] < kRounded || index[a] > image.size[a] - 1 - kRounded) return true;
   }
   return false;
 }
