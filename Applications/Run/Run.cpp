@@ -122,6 +122,7 @@ void checkBeforehand(Context& context, const RunSettings& s, const pipeline::Pla
   for (const auto* file : {&s.atlas, &s.t2}) {
     if (*file) static_cast<void>(io::readGrid(**file));
   }
+  checkSides(context, s, plan);
   checkT2(s, plan);
   if (!context.given("dry-run")) return;
   for (const pipeline::PlannedStep& step : plan.steps) {

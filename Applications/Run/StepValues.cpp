@@ -89,6 +89,20 @@ Json stepValues(const Context& context, const RunSettings& s, const pipeline::Pl
   return values;
 }
 
+void checkSides(const Context& context, const RunSettings& s, const pipeline::Plan& plan) {
+  const auto& steps = plan.steps;
+  const auto segment = std::ranges::find(steps, "segment", &pipeline::PlannedStep::command);
+  const bool isNeeded = std::ranges::any_of(steps, [](const pipeline::PlannedStep& step) {
+    return step.command == "surface" || step.command == "thickness";
+  });
+  if (segment == steps.end() || !isNeeded) return;
+  const Json values = givenValues(context, s, *segment);
+  if (values.value("template", "") != "none" || values.contains("atlas")) return;
+  throw UsageError(
+      "run: without a head's template nothing tells the hemispheres apart; give --atlas, or leave "
+      "out --segment.template none");
+}
+
 void checkT2(const RunSettings& s, const pipeline::Plan& plan) {
   for (const pipeline::PlannedStep& step : plan.steps) {
     Json values = *step.values;

@@ -15,6 +15,9 @@ namespace explica::app {
 [[nodiscard]] provenance::Json stepValues(const Context& context, const RunSettings& s,
                                           const pipeline::PlannedStep& step);
 
+/// @throws UsageError  hemispheres are asked for that the segmentation will not tell apart
+void checkSides(const Context& context, const RunSettings& s, const pipeline::Plan& plan);
+
 /// Says of each step whether --t2 can be used.
 /// @throws UsageError  it cannot
 void checkT2(const RunSettings& s, const pipeline::Plan& plan);

@@ -416,10 +416,12 @@ TEST(Run, ASecondImageWithoutAFirstIsRefused) {
 TEST(Run, AT1WithoutTemplateAndAtlasHasNoHemispheres) {
   TemporaryFolder folder;
   makePhantom(folder);
-  const auto run = explica({"run", folder / "phantom/t1.nii.gz", "--segment.template", "none",
-                            "--accept", "brain-volume", "--out", folder / "out"});
-  EXPECT_EQ(run.exitCode, 2);
-  EXPECT_NE(run.err.find("hemisphere.nii.gz"), std::string::npos) << run;
+  const auto run = explica(
+      {"run", folder / "phantom/t1.nii.gz", "--segment.template", "none", "--out", folder / "out"});
+  EXPECT_EQ(run.exitCode, 1);
+  EXPECT_NE(run.err.find("nothing tells the hemispheres apart; give --atlas"), std::string::npos)
+      << run;
+  EXPECT_FALSE(fs::exists(folder / "out"));
 }
 
 }  // namespace
