@@ -375,6 +375,11 @@ TEST_F(Longitudinal, SessionsOfDifferentVoxelsAreToBeLookedAt) {
   const Json summary = readJson(folder_ / "out/summary.json");
   EXPECT_EQ(summary["session_voxels"], 2);
   EXPECT_NE(summary["reasons"].dump().find("Voxel sizes of the sessions"), std::string::npos);
+  // Its page has the doubts of the runs within it.
+  ASSERT_EQ(explica({"report", folder_ / "out", "--out", folder_ / "page"}).exitCode, 0);
+  const std::string page = readText(folder_ / "page/report.html");
+  EXPECT_NE(page.find("skull or neck may be left in the brain"), std::string::npos);
+  EXPECT_EQ(page.find("stopped: finished"), std::string::npos);
 }
 
 TEST_F(Longitudinal, OfOneSessionIsRefused) {

@@ -158,6 +158,21 @@ std::vector<ReportFlag> flagsOf(const StepFolder& step) {
   return {};
 }
 
+/// Why a step is doubted or to be looked at, where none of its flags says so: of runs within it.
+std::vector<ReportFlag> flagsOfRuns(const StepFolder& step, const std::vector<ReportFlag>& flags) {
+  const std::string verdict = step.summary.value("verdict", "");
+  const FlagLevel level = verdict == "doubtful" ? FlagLevel::Bad : FlagLevel::Notice;
+  const bool isSaid =
+      std::ranges::any_of(flags, [&](const ReportFlag& flag) { return flag.level >= level; });
+  if (isSaid || (verdict != "doubtful" && verdict != "look")) return {};
+  std::vector<ReportFlag> reasons;
+  const Json listed = step.summary.value("reasons", Json::array());
+  for (const Json& reason : listed) {
+    reasons.push_back({level, titleOf(step.name) + ":", readable(reason), ""});
+  }
+  return reasons;
+}
+
 /// Takes away links to what this page does not show.
 void dropIdleLinks(report::ReportContent& content) {
   std::set<std::string> places;
@@ -204,11 +219,17 @@ void flagSteps(ResultFolder& results) {
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {
-      for (ReportFlag& flag : doubtFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : ownFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : judgedFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : detachedFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
+      std::vector<ReportFlag> flags;
+      const auto add = [&flags](std::vector<ReportFlag> more) {
+        std::ranges::move(more, std::back_inserter(flags));
+      };
+      add(doubtFlags(step));
+      add(ownFlags(step));
+      add(judgedFlags(step));
+      add(detachedFlags(step));
+      add(flagsOf(step));
+      add(flagsOfRuns(step, flags));
+      std::ranges::move(flags, std::back_inserter(content.flags));
     });
   }
   results.attempt("Comparison of files", [&] { judgeFiles(results); });

@@ -77,11 +77,10 @@ report::ReportStep reportStep(const StepFolder& step) {
   out.seconds = execution.value("seconds", 0.0);
   out.commandLine = commandLineOf(execution);
   out.version = versionOf(step);
-  // An implausible result is complete: its flags say what is wrong.
-  const bool implausible = !step.summary.value("plausible", true);
+  // A doubted result is complete: its flags say what is wrong.
   const auto termination = step.record.value("termination", std::string("not-run"));
   const bool ended = reachedGoal(valueOf<Termination>(termination));
-  if (step.record.value("exit_code", 0) != 0 && !(implausible && ended)) {
+  if (step.record.value("exit_code", 0) != 0 && !ended) {
     out.state = report::StepState::StoppedEarly;
     out.message = "stopped: " + termination;
   }
