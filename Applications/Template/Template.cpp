@@ -35,10 +35,11 @@ void declare(Declaration& d, TemplateSettings& s) {
   d.synopsis("a template of people's own: mean folds, surfaces and regions, without favour for any")
       .description(
           "Registers all people to their mean, again and again, and moves the mean each time to "
-          "where the people's own spheres are deformed by the identity in the mean. What is "
-          "written is a folder for --template of register, parcellate and run. Surfaces are means "
-          "of positions after rigid alignment; regions, where all people have some, are those of "
-          "the majority, by their names. A hemisphere that fewer than two people have is left out.")
+          "where the people's own spheres are deformed by the identity in the mean. The order of "
+          "people says only where it lies in space. What is written is a folder for --template of "
+          "register, parcellate and run. Surfaces are means of positions after rigid alignment; "
+          "regions, where all people have some, are those of the majority, by their names. A "
+          "hemisphere that fewer than two people have is left out.")
       .reference(
           "Guimond, Meunier, Thirion 2000, Computer Vision and Image Understanding 77:192-210")
       .example("explica template sub-01 sub-02 sub-03 --out ours",

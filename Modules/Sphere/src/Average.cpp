@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace explica::sphere {
 namespace {
@@ -93,6 +94,20 @@ FoldingSphere onGrid(const FoldingSphere& mean, const TriangleMesh& grid) {
   return folding;
 }
 
+/// From whom to begin, and in which order to add: whichever way people are named, by how deep their
+/// folds are, so that it is the same; the person in the middle first.
+std::vector<std::size_t> orderOf(const std::vector<FoldingSphere>& people) {
+  std::vector<double> depth;
+  for (const FoldingSphere& person : people) {
+    depth.push_back((person.sulc.array() - person.sulc.mean()).square().mean());
+  }
+  std::vector<std::size_t> order(people.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, {}, [&](std::size_t p) { return depth[p]; });
+  std::swap(order.front(), order[order.size() / 2]);
+  return order;
+}
+
 double meanAngle(const Positions& a, const Positions& b) {
   return (a.rowwise().normalized() - b.rowwise().normalized()).rowwise().norm().mean() * 180 / kPi;
 }
@@ -104,14 +119,16 @@ SphereAverage averageSpheres(std::vector<FoldingSphere> people, const TriangleMe
   if (people.size() < 2) throw InvalidInput("people: a mean is of two at least");
   const auto count = static_cast<double>(people.size());
   SphereAverage average;
-  FoldingSphere target = people.front();
+  const std::vector<std::size_t> order = orderOf(people);
+  FoldingSphere target = people[order.front()];
   RegisterOptions registration = options.registration;
   for (int n = 0; n < options.iterations; ++n) {
     Means means(grid.vertexCount());
-    average.registered.clear();
+    average.registered.resize(people.size());
     average.correlation = 0;
-    for (std::size_t p = 0; p < people.size(); ++p) {
-      monitor.progress((n + static_cast<double>(p) / count) / options.iterations,
+    double done = 0;
+    for (const std::size_t p : order) {
+      monitor.progress((n + done++ / count) / options.iterations,
                        "iteration " + std::to_string(n + 1) + ", person " + std::to_string(p + 1));
       const auto found = registerSphere(people[p], target, registration, monitor);
       if (found.termination == Termination::Interrupted) {
@@ -122,7 +139,7 @@ SphereAverage averageSpheres(std::vector<FoldingSphere> people, const TriangleMe
                 placesOn({found.positions, people[p].sphere.faces}, grid.positions));
       // From here on the person's sphere is turned as the template is.
       people[p].sphere.positions *= rotationOnto(people[p], found).transpose();
-      average.registered.push_back(found.positions);
+      average.registered[p] = found.positions;
       average.correlation += found.after.sulc / count;
     }
     registration.rotate = false;

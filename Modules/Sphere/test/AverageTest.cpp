@@ -51,6 +51,21 @@ TEST(SphereAverage, OfTwoOppositeDeformationsIsHalfwayWhoeverIsFirst) {
   EXPECT_LT((there - people[0].sulc).cwiseAbs().mean(), 0.05);
 }
 
+TEST(SphereAverage, DoesNotDependOnTheOrderOfThePeople) {
+  const std::vector<FoldingSphere> people = {personAt(shifted(0.2)), personAt(shifted(-0.05)),
+                                             personAt(shifted(0.1))};
+  const TriangleMesh grid = geometry::makeIcosphere(4, 100);
+  AverageOptions once = quickAverage();
+  once.iterations = 1;
+  once.registration.level = 3;
+  once.registration.rotate = false;
+  const SphereAverage one = averageSpheres(people, grid, once);
+  const SphereAverage other = averageSpheres({people[2], people[0], people[1]}, grid, once);
+  EXPECT_EQ(one.folding.sulc, other.folding.sulc);
+  EXPECT_EQ(one.registered[0], other.registered[1]);
+  EXPECT_EQ(one.registered[2], other.registered[0]);
+}
+
 TEST(MeanShape, OfTurnedAndMovedShapesIsTheShape) {
   const Positions shape = shifted(0.3) * 50;
   const Eigen::Matrix3d turn =

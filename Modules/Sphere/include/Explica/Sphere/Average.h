@@ -36,7 +36,8 @@ struct SphereAverage {
 /// Averages people's spheres and folds without favour for any of them: the template on which each
 /// person's own, rotated sphere is deformed by the identity in the mean.
 ///
-/// All are registered to the mean of the iteration before, at first to the first person.  At each
+/// All are registered to the mean of the iteration before, at first to the person whose folds are
+/// of middle depth, so that the order of the people does not matter.  At each
 /// vertex of the grid the mean of the places that it has on the people's spheres, rotated onto it
 /// as well as a rotation can, is where the next template has its folds [Guimond2000].  It ends
 /// where that mean is less than 0.05 degrees from the vertex, in the mean over all.  The people's
