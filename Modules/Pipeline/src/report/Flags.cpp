@@ -168,7 +168,7 @@ std::vector<ReportFlag> flagsOfRuns(const StepFolder& step, const std::vector<Re
   std::vector<ReportFlag> reasons;
   const Json listed = step.summary.value("reasons", Json::array());
   for (const Json& reason : listed) {
-    reasons.push_back({level, titleOf(step.name) + ":", readable(reason), ""});
+    reasons.push_back({level, titleOf(step.command) + ":", readable(reason), ""});
   }
   return reasons;
 }
