@@ -187,9 +187,10 @@ bool eliminateDense(Panel& columns, Eigen::MatrixXd& rest, bool tiled) {
   return true;
 }
 
+using EdgeSpan = std::span<const std::pair<std::int32_t, std::int32_t>>;
+
 /// Symmetric, ones on the diagonal and where points are joined.
-Eigen::SparseMatrix<double> graphOf(std::int32_t count,
-                                    std::span<const std::pair<std::int32_t, std::int32_t>> edges) {
+Eigen::SparseMatrix<double> graphOf(std::int32_t count, EdgeSpan edges) {
   std::vector<std::int32_t> begin(static_cast<std::size_t>(count) + 1, 0);
   for (std::int32_t n = 0; n < count; ++n) begin[n + 1] = 1;
   for (const auto& [i, j] : edges) {
@@ -212,10 +213,7 @@ Eigen::SparseMatrix<double> graphOf(std::int32_t count,
   return graph;
 }
 
-}  // namespace
-
-std::vector<std::int32_t> eliminationPlaces(
-    std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges) {
+std::vector<std::int32_t> placesOf(std::int32_t count, EdgeSpan edges) {
   const Eigen::SparseMatrix<double> graph = graphOf(count, edges);
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
   Eigen::AMDOrdering<int>()(graph, order);
@@ -234,6 +232,46 @@ std::vector<std::int32_t> eliminationPlaces(
   const std::vector<std::int32_t> post = postorderPlaces(eliminationTree(upper));
   for (std::int32_t& p : place) p = post[p];
   return place;
+}
+
+void layOut(Elimination& elimination, EdgeSpan edges) {
+  const std::vector<std::int32_t>& place = elimination.place;
+  const auto count = static_cast<std::int32_t>(place.size());
+  std::vector<std::int32_t>& begin = elimination.pattern.begin;
+  begin.assign(place.size() + 1, 1);
+  begin[0] = 0;
+  for (const auto& [i, j] : edges) ++begin[std::min(place[i], place[j]) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  struct Entry {
+    std::int32_t row, edge;
+  };
+  std::vector<Entry> entries(static_cast<std::size_t>(begin.back()));
+  std::vector<std::int32_t> at(begin.begin(), begin.end() - 1);
+  for (std::int32_t n = 0; n < count; ++n) entries[at[n]++] = {n, 0};
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    const std::int32_t i = place[edges[n].first], j = place[edges[n].second];
+    const auto edge = static_cast<std::int32_t>(n);
+    entries[at[std::min(i, j)]++] = {std::max(i, j), i > j ? edge : ~edge};
+  }
+  elimination.pattern.rows.resize(entries.size());
+  elimination.edge.resize(entries.size());
+  parallelFor(place.size(), [&](std::size_t c) {
+    std::sort(entries.begin() + begin[c], entries.begin() + begin[c + 1],
+              [](const Entry& a, const Entry& b) { return a.row < b.row; });
+    for (std::int32_t e = begin[c]; e < begin[c + 1]; ++e) {
+      elimination.pattern.rows[e] = entries[e].row;
+      elimination.edge[e] = entries[e].edge;
+    }
+  });
+}
+
+}  // namespace
+
+Elimination eliminationOf(std::int32_t count, EdgeSpan edges) {
+  Elimination elimination;
+  elimination.place = placesOf(count, edges);
+  layOut(elimination, edges);
+  return elimination;
 }
 
 template <int Size>

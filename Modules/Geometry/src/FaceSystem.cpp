@@ -15,8 +15,6 @@ namespace {
 constexpr std::array<std::array<int, 2>, 6> kCorners = {
     {{0, 0}, {1, 1}, {2, 2}, {1, 0}, {2, 0}, {2, 1}}};
 
-using VertexPairs = std::vector<std::pair<std::int32_t, std::int32_t>>;
-
 }  // namespace
 
 FaceSystem::FaceSystem(const Faces& faces, Eigen::Index vertexCount)
@@ -27,7 +25,7 @@ FaceSystem::FaceSystem(const Faces& faces, Eigen::Index vertexCount)
     place_[v] = static_cast<std::int32_t>(used_.size());
     used_.push_back(static_cast<std::int32_t>(v));
   }
-  VertexPairs edges;
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
   for (Eigen::Index f = 0; f < faces_.rows(); ++f) {
     for (int k = 0; k < 3; ++k) {
       const std::int32_t a = place_[faces_(f, k)], b = place_[faces_(f, (k + 1) % 3)];
@@ -36,29 +34,11 @@ FaceSystem::FaceSystem(const Faces& faces, Eigen::Index vertexCount)
   }
   std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  orderVertices(edges);
+  Elimination elimination = eliminationOf(static_cast<std::int32_t>(used_.size()), edges);
+  for (const std::int32_t v : used_) place_[v] = elimination.place[place_[v]];
+  pattern_ = std::move(elimination.pattern);
   findBlocks();
   cholesky_.analyse(pattern_);
-}
-
-void FaceSystem::orderVertices(VertexPairs& edges) {
-  const auto count = static_cast<std::int32_t>(used_.size());
-  const auto order = eliminationPlaces(count, edges);
-  for (const std::int32_t v : used_) place_[v] = order[place_[v]];
-  for (auto& [a, b] : edges) {
-    const auto [low, high] = std::minmax(order[a], order[b]);
-    const std::int32_t column = low, row = high;
-    a = column;
-    b = row;
-  }
-  for (std::int32_t n = 0; n < count; ++n) edges.emplace_back(n, n);
-  std::ranges::sort(edges);
-  pattern_.begin.assign(static_cast<std::size_t>(count) + 1, 0);
-  for (const auto& [column, row] : edges) {
-    ++pattern_.begin[column + 1];
-    pattern_.rows.push_back(row);
-  }
-  std::partial_sum(pattern_.begin.begin(), pattern_.begin.end(), pattern_.begin.begin());
 }
 
 std::int32_t FaceSystem::slot(std::int32_t row, std::int32_t column) const {

@@ -6,43 +6,34 @@
 #include "Explica/Core/Parallel.h"
 
 namespace explica::geometry {
-namespace {
-
-/// The lower triangle in the order of the places; rows of a column ascending.
-Eigen::SparseMatrix<double> inOrder(const Eigen::SparseMatrix<double>& matrix,
-                                    const std::vector<std::int32_t>& place) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, std::int32_t> order(matrix.rows());
-  std::ranges::copy(place, order.indices().begin());
-  Eigen::SparseMatrix<double> lower(matrix.rows(), matrix.cols());
-  lower.selfadjointView<Eigen::Lower>() = matrix.selfadjointView<Eigen::Lower>().twistedBy(order);
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> byRows = lower;  // which sorts
-  return byRows;
-}
-
-}  // namespace
 
 void SparseCholesky::compute(const Eigen::SparseMatrix<double>& matrix) {
   using Entry = Eigen::SparseMatrix<double>::InnerIterator;
   std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  std::int32_t diagonal = 0;  // entries
+  std::vector<double> below, diagonal;
   for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
     for (Entry entry(matrix, column); entry; ++entry) {
       const auto row = static_cast<std::int32_t>(entry.row());
-      if (row > column) edges.emplace_back(row, static_cast<std::int32_t>(column));
-      diagonal += row == column;
+      if (row == column) diagonal.push_back(entry.value());
+      if (row <= column) continue;
+      edges.emplace_back(row, static_cast<std::int32_t>(column));
+      below.push_back(entry.value());
     }
   }
-  place_ = eliminationPlaces(static_cast<std::int32_t>(matrix.rows()), edges);
-  definite_ = diagonal == matrix.rows();
+  Elimination elimination = eliminationOf(static_cast<std::int32_t>(matrix.rows()), edges);
+  place_ = std::move(elimination.place);
+  definite_ = diagonal.size() == place_.size();
   if (!definite_) return;
-  const Eigen::SparseMatrix<double> lower = inOrder(matrix, place_);
-  BlockPattern pattern;
-  pattern.begin.assign(lower.outerIndexPtr(), lower.outerIndexPtr() + lower.cols() + 1);
-  pattern.rows.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
-  std::vector<BlockCholesky<1>::Block> values(pattern.rows.size());
-  for (std::size_t n = 0; n < values.size(); ++n) values[n](0, 0) = lower.valuePtr()[n];
-  factor_.analyse(pattern);
-  definite_ = factor_.factorise(pattern, values);
+  std::vector<BlockCholesky<1>::Block> values(elimination.edge.size());
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const std::int32_t edge = elimination.edge[n];
+    if (!below.empty()) values[n](0, 0) = below[std::max(edge, ~edge)];
+  }
+  for (std::size_t v = 0; v < place_.size(); ++v) {
+    values[elimination.pattern.begin[place_[v]]](0, 0) = diagonal[v];
+  }
+  factor_.analyse(elimination.pattern);
+  definite_ = factor_.factorise(elimination.pattern, values);
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::Ref<const Eigen::MatrixXd>& right) const {

@@ -59,39 +59,10 @@ void BlockSystem::order() {
       couplings.emplace_back(i, rows_.columns[n]);
     }
   }
-  place_ = geometry::eliminationPlaces(count_, couplings);
-  layOut(couplings);
+  elimination_ = geometry::eliminationOf(count_, couplings);
+  blocks_.resize(elimination_.edge.size());
+  factor_.analyse(elimination_.pattern);
   ordered_ = true;
-}
-
-void BlockSystem::layOut(const Couplings& couplings) {
-  pattern_.begin.assign(static_cast<std::size_t>(count_) + 1, 0);
-  for (std::int32_t n = 0; n < count_; ++n) pattern_.begin[n + 1] = 1;
-  for (const auto& [i, j] : couplings) ++pattern_.begin[std::min(place_[i], place_[j]) + 1];
-  std::partial_sum(pattern_.begin.begin(), pattern_.begin.end(), pattern_.begin.begin());
-  struct Entry {
-    std::int32_t row, source;
-  };
-  std::vector<Entry> entries(static_cast<std::size_t>(pattern_.begin[count_]));
-  std::vector<std::int32_t> at(pattern_.begin.begin(), pattern_.begin.end() - 1);
-  for (std::int32_t n = 0; n < count_; ++n) entries[at[n]++] = {n, 0};
-  for (std::size_t n = 0; n < couplings.size(); ++n) {
-    const std::int32_t i = place_[couplings[n].first], j = place_[couplings[n].second];
-    const auto source = static_cast<std::int32_t>(n);
-    entries[at[std::min(i, j)]++] = {std::max(i, j), i > j ? source : ~source};
-  }
-  pattern_.rows.resize(entries.size());
-  source_.resize(entries.size());
-  parallelFor(static_cast<std::size_t>(count_), kGrain, [&](std::size_t c) {
-    std::sort(entries.begin() + pattern_.begin[c], entries.begin() + pattern_.begin[c + 1],
-              [](const Entry& a, const Entry& b) { return a.row < b.row; });
-    for (std::int32_t e = pattern_.begin[c]; e < pattern_.begin[c + 1]; ++e) {
-      pattern_.rows[e] = entries[e].row;
-      source_[e] = entries[e].source;
-    }
-  });
-  blocks_.resize(entries.size());
-  factor_.analyse(pattern_);
 }
 
 void BlockSystem::addDiagonal(double value) {
@@ -100,26 +71,27 @@ void BlockSystem::addDiagonal(double value) {
 
 bool BlockSystem::solve(const Positions& rightSide, Positions& solution) {
   order();
+  const auto& [place, pattern, edge] = elimination_;
   parallelFor(static_cast<std::size_t>(count_), kGrain, [&](std::size_t i) {
-    const std::int32_t column = place_[i];
-    blocks_[pattern_.begin[column]] = diagonal_[i];
-    for (std::int32_t e = pattern_.begin[column] + 1; e < pattern_.begin[column + 1]; ++e) {
-      if (source_[e] >= 0) {
-        blocks_[e] = below_[source_[e]];
+    const std::int32_t column = place[i];
+    blocks_[pattern.begin[column]] = diagonal_[i];
+    for (std::int32_t e = pattern.begin[column] + 1; e < pattern.begin[column + 1]; ++e) {
+      if (edge[e] >= 0) {
+        blocks_[e] = below_[edge[e]];
       } else {
-        blocks_[e] = below_[~source_[e]].transpose();
+        blocks_[e] = below_[~edge[e]].transpose();
       }
     }
   });
-  if (!factor_.factorise(pattern_, blocks_)) return false;
+  if (!factor_.factorise(pattern, blocks_)) return false;
   Eigen::VectorXd ordered(3 * count_);
   for (std::int32_t i = 0; i < count_; ++i) {
-    ordered.segment<3>(3 * place_[i]) = rightSide.row(i).transpose();
+    ordered.segment<3>(3 * place[i]) = rightSide.row(i).transpose();
   }
   factor_.solve(ordered);
   solution.resize(count_, 3);
   for (std::int32_t i = 0; i < count_; ++i) {
-    solution.row(i) = ordered.segment<3>(3 * place_[i]).transpose();
+    solution.row(i) = ordered.segment<3>(3 * place[i]).transpose();
   }
   return solution.allFinite();
 }

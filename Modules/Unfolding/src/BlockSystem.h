@@ -54,7 +54,6 @@ class BlockSystem {
     bool operator==(const Rows&) const = default;
   };
   static Rows rowsOf(std::int32_t pointCount, const Couplings& couplings);
-  void layOut(const Couplings& couplings);
   /// Rows are short: a walk along one is faster than halving it.
   [[nodiscard]] std::size_t placeOf(std::int32_t row, std::int32_t column) const {
     std::int32_t n = rows_.begin[row];
@@ -64,13 +63,10 @@ class BlockSystem {
 
   std::int32_t count_ = 0;
   Rows rows_;
-  bool ordered_ = false;                   ///< place_ and pattern_ are those of rows_
+  bool ordered_ = false;                   ///< the elimination is that of rows_
   std::vector<Eigen::Matrix3d> diagonal_;  ///< of each unknown
   std::vector<Eigen::Matrix3d> below_;     ///< of each of rows_.columns
-  std::vector<std::int32_t> place_;        ///< position of each point in the elimination order
-  geometry::BlockPattern pattern_;         ///< in elimination order
-  /// Of each entry of the pattern off its diagonal: of below_, ~n where the block is transposed.
-  std::vector<std::int32_t> source_;
+  geometry::Elimination elimination_;
   std::vector<Eigen::Matrix3d> blocks_;  ///< of the pattern's entries
   geometry::BlockCholesky<3> factor_;
 };

@@ -19,14 +19,9 @@ std::vector<UnfoldFrame> framesAlong(const Unfolder& unfolder,
   const auto stateAt = [&](std::size_t n, double t) {
     UnfoldFrame frame;
     frame.positions = unfolder.reference().positions;
-    const auto& moving = unfolder.movingVertices();
-    for (std::size_t i = 0; i < moving.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      frame.positions.row(moving[i]) =
-          t == 0 ? Eigen::RowVector3d(path[n].row(row))
-                 : Eigen::RowVector3d(path[n].row(row) +
-                                      t * (path[n + 1].row(row) - path[n].row(row)));
-    }
+    Positions moved = path[n];
+    if (t > 0) moved += t * (path[n + 1] - path[n]);
+    frame.positions(unfolder.movingVertices(), Eigen::all) = moved;
     frame.visibility = measure.value(frame.positions);
     return frame;
   };

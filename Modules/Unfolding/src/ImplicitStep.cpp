@@ -125,11 +125,7 @@ void ImplicitStep::differentiate() {
   start_.emplace(u_.configurationAt(state_.positions, contacts_));
   now_.objectiveBefore = u_.objective.value(*start_, u_.strengths(), now_);
   gradient_ = u_.objective.gradient(*start_, u_.strengths(), now_);
-  const auto& moving = u_.setup.moving;
-  rightSide_.resize(static_cast<Eigen::Index>(moving.size()), 3);
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    rightSide_.row(static_cast<Eigen::Index>(i)) = -gradient_.row(moving[i]);
-  }
+  rightSide_ = -gradient_(u_.setup.moving, Eigen::all);
   fill();
 }
 
@@ -191,10 +187,7 @@ Positions ImplicitStep::cappedMotion(const Positions& direction) const {
   const double cap = kLargestMove * u_.setup.edge;
   const double share = largest > cap ? cap / largest : 1;
   Positions motion = Positions::Zero(state_.positions.rows(), 3);
-  const auto& moving = u_.setup.moving;
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    motion.row(moving[i]) = share * direction.row(static_cast<Eigen::Index>(i));
-  }
+  motion(u_.setup.moving, Eigen::all) = share * direction;
   return motion;
 }
 

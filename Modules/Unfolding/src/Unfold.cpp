@@ -18,26 +18,16 @@
 namespace explica::unfolding {
 namespace {
 
-Positions rowsOf(const Positions& positions, const std::vector<std::int32_t>& vertices) {
-  Positions rows(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    rows.row(static_cast<Eigen::Index>(i)) = positions.row(vertices[i]);
-  }
-  return rows;
-}
-
 Positions movingOnly(const Unfolder& unfolder) {
-  return rowsOf(unfolder.state().positions, unfolder.movingVertices());
+  return unfolder.state().positions(unfolder.movingVertices(), Eigen::all);
 }
 
 /// The same state once more vertices move than did then: those stood where they stand at rest.
 void addStanding(const Unfolder& unfolder, const std::vector<std::int32_t>& movedThen,
                  Positions& state) {
   Positions all = unfolder.reference().positions;
-  for (std::size_t i = 0; i < movedThen.size(); ++i) {
-    all.row(movedThen[i]) = state.row(static_cast<Eigen::Index>(i));
-  }
-  state = rowsOf(all, unfolder.movingVertices());
+  all(movedThen, Eigen::all) = state;
+  state = all(unfolder.movingVertices(), Eigen::all);
 }
 
 void requirePositive(double visibility) {
@@ -92,10 +82,7 @@ double chooseState(Unfolder& unfolder, const visibility::Viewpoints& viewpoints,
   result.iteration = unfolder.state().iteration;
   const double seen = unfolder.seenShare();
   if (!isWorse(unfolder.record(), best, options, seenIfAsked(unfolder))) return seen;
-  const auto& moving = unfolder.movingVertices();
-  for (std::size_t i = 0; i < moving.size(); ++i) {
-    result.mesh.positions.row(moving[i]) = best.moving.row(static_cast<Eigen::Index>(i));
-  }
+  result.mesh.positions(unfolder.movingVertices(), Eigen::all) = best.moving;
   result.iteration = best.iteration;
   return visibility::seenShare(result.mesh, unfolder.region().faces, viewpoints);
 }

@@ -19,11 +19,19 @@ struct BlockPattern {
   [[nodiscard]] std::int32_t count() const { return static_cast<std::int32_t>(begin.size()) - 1; }
 };
 
-/// Elimination order of few fill-ins for a graph of `count` points, in a postorder of the
-/// elimination tree, so that columns with the same rows stand together.
+/// A symmetric matrix of blocks in its order of elimination.
+struct Elimination {
+  std::vector<std::int32_t> place;  ///< of each point
+  BlockPattern pattern;
+  /// Of each entry of the pattern off its diagonal: its edge, or ~ the edge whose block stands
+  /// there transposed.
+  std::vector<std::int32_t> edge;
+};
+
+/// Order of few fill-ins for a graph of `count` points, by least degree [Amestoy1996], in a
+/// postorder of the elimination tree, so that columns with the same rows stand together.
 /// @param edges  pairs of points, first > second, none twice
-/// @return place of each point in the order
-[[nodiscard]] std::vector<std::int32_t> eliminationPlaces(
+[[nodiscard]] Elimination eliminationOf(
     std::int32_t count, std::span<const std::pair<std::int32_t, std::int32_t>> edges);
 
 /// Cholesky factorisation of a sparse symmetric positive definite matrix of Size x Size blocks by
@@ -39,7 +47,7 @@ class BlockCholesky {
  public:
   using Block = Eigen::Matrix<double, Size, Size>;
 
-  /// Finds the fronts; the pattern should come from an order of eliminationPlaces.
+  /// Finds the fronts; the pattern should be that of an elimination.
   void analyse(const BlockPattern& pattern);
 
   /// @param blocks  one block per entry of the pattern

@@ -55,7 +55,6 @@ class FaceSystem {
     std::array<std::int32_t, 6> at;
     std::array<bool, 6> turned;  ///< the block's transpose belongs there
   };
-  void orderVertices(std::vector<std::pair<std::int32_t, std::int32_t>>& edges);
   void findBlocks();
   [[nodiscard]] std::int32_t slot(std::int32_t row, std::int32_t column) const;
 
