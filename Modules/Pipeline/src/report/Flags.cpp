@@ -24,6 +24,7 @@ std::string sideWord(const StepFolder& step) {
 /// Where a heart is open, how its segments are oriented, and how much of its wall is left out.
 std::vector<ReportFlag> heartFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
+  if (step.command != "heart") return flags;
   if (const auto open = step.number("open_share_ed");
       open && step.summary.value("plausible", true)) {
     flags.push_back({FlagLevel::Good, "Open at its base:",
@@ -153,11 +154,6 @@ std::vector<ReportFlag> doubtFlags(const StepFolder& step) {
   return flags;
 }
 
-std::vector<ReportFlag> flagsOf(const StepFolder& step) {
-  if (step.command == "heart") return heartFlags(step);
-  return {};
-}
-
 /// Takes away links to what this page does not show.
 void dropIdleLinks(report::ReportContent& content) {
   std::set<std::string> places;
@@ -191,24 +187,22 @@ void dropRepeated(std::vector<ReportFlag>& flags) {
 void flagSteps(ResultFolder& results) {
   report::ReportContent& content = results.content();
   for (const report::ReportStep& step : content.steps) {
-    if (step.state == report::StepState::Failed)
-      content.flags.push_back({FlagLevel::Bad, step.name + " failed:", step.message});
-    if (step.state == report::StepState::StoppedEarly)
-      content.flags.push_back({FlagLevel::Notice, step.name + " stopped early:", step.message});
-    if (step.state == report::StepState::Interrupted)
-      content.flags.push_back({FlagLevel::Notice, step.name + " was interrupted:", step.message});
-    if (step.state == report::StepState::Missing)
-      content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
+    using enum report::StepState;
+    const auto say = [&](FlagLevel level, const char* how) {
+      content.flags.push_back({level, step.name + how, step.message});
+    };
+    if (step.state == Failed) say(FlagLevel::Bad, " failed:");
+    if (step.state == StoppedEarly) say(FlagLevel::Notice, " stopped early:");
+    if (step.state == Interrupted) say(FlagLevel::Notice, " was interrupted:");
+    if (step.state == Missing) say(FlagLevel::Notice, " was not run:");
     for (const std::string& warning : step.warnings)
       content.flags.push_back({FlagLevel::Remark, step.name + ":", warning, placeOf(step.name)});
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {
-      for (ReportFlag& flag : doubtFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : ownFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : judgedFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : detachedFlags(step)) content.flags.push_back(std::move(flag));
-      for (ReportFlag& flag : flagsOf(step)) content.flags.push_back(std::move(flag));
+      for (const auto find : {doubtFlags, ownFlags, judgedFlags, detachedFlags, heartFlags}) {
+        std::ranges::move(find(step), std::back_inserter(content.flags));
+      }
     });
   }
   results.attempt("Comparison of files", [&] { judgeFiles(results); });
