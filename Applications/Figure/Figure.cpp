@@ -3,6 +3,7 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/ReadInputs.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Flattening/Comparison.h"
@@ -183,9 +184,8 @@ std::optional<report::ColourScale> scaleOf(const FigureSettings& s, const std::v
     pooled.insert(pooled.end(), shown.map->values.begin(), shown.map->values.end());
   }
   if (!first) return {};
-  report::ColourScale scale = report::scaleFor(
-      Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size())),
-      titleOf(*first), first->unit, s.colours);
+  report::ColourScale scale =
+      report::scaleFor(asVector(pooled), titleOf(*first), first->unit, s.colours);
   if (s.range) {
     scale.low = s.range->x();
     scale.high = s.range->y();

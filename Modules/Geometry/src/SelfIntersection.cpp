@@ -70,23 +70,19 @@ bool facesIntersect(const TriangleMesh& mesh, std::int32_t f, std::int32_t g) {
   }
 }
 
-MotionBounds boundsOfFace(const TriangleMesh& mesh, std::int32_t f, const Point& origin) {
-  const auto corner = [&](int k) {
-    return MotionBounds::ofPoint(mesh.corner(f, k) - origin, Vector::Zero());
-  };
-  MotionBounds bounds = corner(0);
-  bounds.extend(corner(1));
-  bounds.extend(corner(2));
-  return bounds;
-}
-
 /// Bounds that hold a face's corners, about an origin in the middle of the mesh.
 std::vector<MotionBounds> boundsOfFaces(const TriangleMesh& mesh,
                                         const std::vector<std::int32_t>& faces,
                                         const Point& origin) {
   std::vector<MotionBounds> bounds(faces.size());
-  parallelFor(faces.size(),
-              [&](std::size_t n) { bounds[n] = boundsOfFace(mesh, faces[n], origin); });
+  parallelFor(faces.size(), [&](std::size_t n) {
+    const auto corner = [&](int k) {
+      return MotionBounds::ofPoint(mesh.corner(faces[n], k) - origin, Vector::Zero());
+    };
+    bounds[n] = corner(0);
+    bounds[n].extend(corner(1));
+    bounds[n].extend(corner(2));
+  });
   return bounds;
 }
 
@@ -105,37 +101,6 @@ void intersect(const TriangleMesh& mesh, const BoundsSearch& search,
     });
   });
   for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
-}
-
-/// Calls visit(item) for what of a pyramid may meet a box.  Few things that lie far apart are
-/// sooner found so, one by one, than by a pyramid of their own, whose blocks would reach from one
-/// to others.
-template <class Visit>
-void visitMeeting(const BoundsPyramid& pyramid, const MotionBounds& box, const Visit& visit) {
-  constexpr int kLanes = BoundsBlock::kLanes;
-  std::vector<std::array<std::int32_t, 2>> waiting = {{pyramid.levelCount() - 1, 0}};
-  while (!waiting.empty()) {
-    const auto [level, n] = waiting.back();
-    waiting.pop_back();
-    const BoundsBlock& block = pyramid.block(level, n);
-    std::array<bool, kLanes> meets;
-    meets.fill(true);
-    for (int k = 0; k < 3; ++k) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        meets[lane] &=
-            (block.lower[k][lane] <= box.upper[k]) & (box.lower[k] <= block.upper[k][lane]);
-      }
-    }
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (!meets[lane]) continue;
-      const std::int32_t place = kLanes * n + lane;
-      if (level > 0) {
-        waiting.push_back({level - 1, place});
-      } else {
-        visit(pyramid.item(place));
-      }
-    }
-  }
 }
 
 bool any(std::int32_t /*f*/, std::int32_t /*g*/) {
@@ -221,16 +186,8 @@ std::vector<FacePair> SelfIntersectionSearch::find(const TriangleMesh& mesh,
     const BoundsPyramid astray(boundsOfFaces(mesh, astray_, origin_));
     intersect(mesh, {&own, &own, 0}, moved, moved, pairs, any);
     intersect(mesh, {&own, &astray, 0}, moved, astray_, pairs, any);
-    std::vector<std::vector<FacePair>> found(moved.size());
-    parallelFor(moved.size(), 256, [&](std::size_t n) {
-      const std::int32_t f = moved[n];
-      visitMeeting(sorted_, boundsOfFace(mesh, f, origin_), [&](std::int32_t g) {
-        if ((isMoved_[g] | isAstray_[g]) != 0) return;
-        const FacePair pair = {std::min(f, g), std::max(f, g)};
-        if (facesIntersect(mesh, pair[0], pair[1])) found[n].push_back(pair);
-      });
-    });
-    for (const auto& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    intersect(mesh, {&own, &sorted_, 0}, moved, faces_, pairs,
+              [&](std::int32_t, std::int32_t g) { return (isMoved_[g] | isAstray_[g]) == 0; });
     astray_.insert(astray_.end(), moved.begin(), moved.end());
     for (const std::int32_t f : moved) isAstray_[f] = 1;
   }

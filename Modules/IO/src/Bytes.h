@@ -65,12 +65,6 @@ template <class T>
   return value;
 }
 
-/// The same as a real number, for tables of types.
-template <class T>
-[[nodiscard]] double loadReal(const std::uint8_t* from, bool bigEndian) {
-  return static_cast<double>(load<T>(from, bigEndian));
-}
-
 template <class T>
 void store(std::uint8_t* to, T value, bool bigEndian) {
   std::memcpy(to, &value, sizeof(T));

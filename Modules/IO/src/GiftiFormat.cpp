@@ -6,6 +6,7 @@
 #include "ByteSource.h"
 #include "MeshBuilder.h"
 #include "PackedFile.h"
+#include "StoredVolume.h"
 #include "SurfaceFrame.h"
 #include "Xml.h"
 
@@ -33,27 +34,12 @@ Metadata metadataOf(const XmlElement& element) {
   return metadata;
 }
 
-struct GiftiType {
-  const char* name;
-  std::size_t width;
-  double (*load)(const std::uint8_t*, bool);
-};
-
-const GiftiType& typeOf(const std::filesystem::path& path, const std::string& name) {
-  static constexpr GiftiType kTypes[] = {{"NIFTI_TYPE_FLOAT32", 4, loadReal<float>},
-                                         {"NIFTI_TYPE_INT32", 4, loadReal<std::int32_t>},
-                                         {"NIFTI_TYPE_UINT8", 1, loadReal<std::uint8_t>},
-                                         {"NIFTI_TYPE_FLOAT64", 8, loadReal<double>},
-                                         {"NIFTI_TYPE_UINT32", 4, loadReal<std::uint32_t>},
-                                         {"NIFTI_TYPE_INT16", 2, loadReal<std::int16_t>},
-                                         {"NIFTI_TYPE_UINT16", 2, loadReal<std::uint16_t>},
-                                         {"NIFTI_TYPE_INT8", 1, loadReal<std::int8_t>},
-                                         {"NIFTI_TYPE_INT64", 8, loadReal<std::int64_t>},
-                                         {"NIFTI_TYPE_UINT64", 8, loadReal<std::uint64_t>}};
-  for (const GiftiType& row : kTypes) {
-    if (name == row.name) return row;
-  }
-  failToRead(path, "has a GIFTI array of the unknown type '" + name + "'");
+StoredType typeOf(const std::filesystem::path& path, const std::string& name) {
+  constexpr std::string_view kPrefix = "NIFTI_TYPE_";
+  const auto type =
+      name.starts_with(kPrefix) ? typeNamed(name.substr(kPrefix.size())) : std::nullopt;
+  if (!type) failToRead(path, "has a GIFTI array of the unknown type '" + name + "'");
+  return *type;
 }
 
 /// One of two words, in the spelling of the standard or of the programs that write it otherwise.
@@ -139,7 +125,7 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
       }
     }
   }
-  const GiftiType& type = typeOf(path, element["DataType"]);
+  const StoredType type = typeOf(path, element["DataType"]);
   const XmlElement* data = element.child("Data");
   static const std::string kNone;
   const std::string& text = data == nullptr ? kNone : data->text;
@@ -155,14 +141,11 @@ GiftiArray parseArray(const std::filesystem::path& path, const XmlElement& eleme
     }
   } else {
     const Bytes raw =
-        rawValues(path, element, text, static_cast<std::uint64_t>(count) * type.width);
+        rawValues(path, element, text, static_cast<std::uint64_t>(count) * widthOf(type));
     const bool bigEndian =
         isSecond(path, "Endian", element["Endian"], {"LittleEndian", "GIFTI_ENDIAN_LITTLE"},
                  {"BigEndian", "GIFTI_ENDIAN_BIG"});
-    array.values.resize(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < array.values.size(); ++i) {
-      array.values[i] = type.load(raw.data() + i * type.width, bigEndian);
-    }
+    array.values = realsOf(raw, type, bigEndian);
   }
   const bool columns = isSecond(path, "ArrayIndexingOrder", element["ArrayIndexingOrder"],
                                 {"RowMajorOrder", "GIFTI_IND_ORD_ROW_MAJOR", ""},
@@ -312,8 +295,8 @@ void writeText(const std::filesystem::path& path, const std::string& text) {
 }
 
 template <class T>
-ByteView viewOf(const std::vector<T>& values) {
-  return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
+ByteView viewOf(std::span<const T> values) {
+  return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()};
 }
 
 /// True if each side of a face is shared with a face that runs it the other way.
@@ -424,17 +407,8 @@ std::vector<VertexMap> readGiftiMaps(const std::filesystem::path& path, ByteView
     const std::int64_t rows = array.size[0];
     const std::int64_t columns =
         rows == 0 ? 0 : static_cast<std::int64_t>(array.values.size()) / rows;
-    const std::string name = valueOr(array.metadata, "Name");
-    for (std::int64_t column = 0; column < columns; ++column) {
-      VertexMap map;
-      map.name = columns > 1 ? name + "[" + std::to_string(column) + "]" : name;
-      map.unit = valueOr(array.metadata, "Explica:Unit");
-      map.values.resize(rows);
-      for (std::int64_t row = 0; row < rows; ++row) {
-        map.values[row] = array.values[row * columns + column];
-      }
-      maps.push_back(std::move(map));
-    }
+    addColumns(maps, valueOr(array.metadata, "Name"), valueOr(array.metadata, "Explica:Unit"),
+               array.values, static_cast<std::size_t>(columns));
   }
   return maps;
 }
@@ -487,18 +461,17 @@ void writeGiftiSurface(const std::filesystem::path& path, const TriangleMesh& me
                       {"GeometricType", metadata.geometricType},
                       {"Name", metadata.name}},
                      true,
-                     viewOf(positions)});
+                     viewOf(std::span<const float>(positions))});
   const std::string topology = !metadata.topologicalType.empty() ? metadata.topologicalType
                                : isClosed(mesh.faces)            ? "Closed"
                                                                  : "Open";
-  const ByteView faces(reinterpret_cast<const std::uint8_t*>(mesh.faces.data()),
-                       static_cast<std::size_t>(mesh.faces.size()) * sizeof(std::int32_t));
+  const std::span faces(mesh.faces.data(), static_cast<std::size_t>(mesh.faces.size()));
   appendArray(text, {"NIFTI_INTENT_TRIANGLE",
                      "NIFTI_TYPE_INT32",
                      {mesh.faceCount(), 3},
                      {{"TopologicalType", topology}},
                      false,
-                     faces});
+                     viewOf(faces)});
   writeText(path, text + "</GIFTI>\n");
 }
 
@@ -525,7 +498,7 @@ Eigen::Index writeGiftiShape(const std::filesystem::path& path, const std::vecto
                        {map.values.size()},
                        {{"Name", map.name}, {"Explica:Unit", map.unit}},
                        false,
-                       viewOf(values)});
+                       viewOf(std::span<const float>(values))});
   }
   writeText(path, text + "</GIFTI>\n");
   return replaced;
@@ -561,8 +534,7 @@ void GiftiMapsWriter::add(const std::string& name, const std::string& unit,
                      {static_cast<std::int64_t>(values.size())},
                      {{"Name", name}, {"Explica:Unit", unit}},
                      false,
-                     ByteView(reinterpret_cast<const std::uint8_t*>(values.data()),
-                              values.size() * sizeof(float))});
+                     viewOf(values)});
   state_->file.write(text);
   ++state_->added;
 }
@@ -610,7 +582,7 @@ void writeGiftiLabel(const std::filesystem::path& path, const LabelMap& labels,
                      {labels.keys.size()},
                      {{"Name", labels.name}},
                      false,
-                     viewOf(keys)});
+                     viewOf(std::span<const std::int32_t>(keys))});
   writeText(path, text + "</GIFTI>\n");
 }
 

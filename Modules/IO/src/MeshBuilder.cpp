@@ -78,4 +78,16 @@ std::int64_t wholeNumber(const std::filesystem::path& path, double value) {
   return static_cast<std::int64_t>(value);
 }
 
+void addColumns(std::vector<VertexMap>& maps, const std::string& name, const std::string& unit,
+                const std::vector<double>& values, std::size_t columns) {
+  for (std::size_t c = 0; c < columns; ++c) {
+    VertexMap map{columns > 1 ? name + "[" + std::to_string(c) + "]" : name, unit,
+                  Eigen::VectorXd(static_cast<Eigen::Index>(values.size() / columns))};
+    for (Eigen::Index row = 0; row < map.values.size(); ++row) {
+      map.values[row] = values[static_cast<std::size_t>(row) * columns + c];
+    }
+    maps.push_back(std::move(map));
+  }
+}
+
 }  // namespace explica::io

@@ -37,6 +37,11 @@ struct MeshBuilder {
                                        std::size_t bytesLeft, std::size_t bytesEach,
                                        const char* what);
 
+/// Adds the columns of a table of values, a row for each vertex; "name[0]" and so on where there
+/// are several.
+void addColumns(std::vector<VertexMap>& maps, const std::string& name, const std::string& unit,
+                const std::vector<double>& values, std::size_t columns);
+
 /// A vertex's number that a file keeps as a real one.
 /// @throws IOError  not whole, or beyond what a double holds exactly
 [[nodiscard]] std::int64_t wholeNumber(const std::filesystem::path& path, double value);

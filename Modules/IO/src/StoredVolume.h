@@ -71,6 +71,12 @@ void withType(StoredType type, const Action& action) {
 
 [[nodiscard]] std::size_t widthOf(StoredType type);
 
+/// The type of this name in small or capital letters, as XML formats have it.
+[[nodiscard]] std::optional<StoredType> typeNamed(std::string_view name);
+
+/// Values of one type as real numbers.
+[[nodiscard]] std::vector<double> realsOf(ByteView raw, StoredType type, bool bigEndian);
+
 /// A volume as its file has it, native byte order, before values are scaled and converted.
 struct StoredVolume {
   VolumeOrigin origin;

@@ -297,6 +297,24 @@ std::size_t widthOf(StoredType type) {
   return width;
 }
 
+std::optional<StoredType> typeNamed(std::string_view name) {
+  const std::string wanted = lowerCase(std::string(name));
+  for (const auto& [type, word] : enumWords(StoredType{})) {
+    if (word == wanted) return type;
+  }
+  return {};
+}
+
+std::vector<double> realsOf(ByteView raw, StoredType type, bool bigEndian) {
+  std::vector<double> values(raw.size() / widthOf(type));
+  withType(type, [&]<class In>(const In*) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = static_cast<double>(load<In>(raw.data() + i * sizeof(In), bigEndian));
+    }
+  });
+  return values;
+}
+
 namespace {
 
 /// Refuses sizes and places that no scanner or microscope gives: a header in other units, or torn.

@@ -5,34 +5,22 @@
 
 #include "ByteSource.h"
 #include "MeshBuilder.h"
+#include "StoredVolume.h"
 #include "SurfaceFrame.h"
 #include "Xml.h"
 
 namespace explica::io {
 namespace {
 
-struct TypeRow {
-  std::string_view legacy;
-  std::string_view xml;
-  std::size_t width;
-  double (*load)(const std::uint8_t*, bool);
-};
-
-// Names in legacy files, in XML files, bytes.
-constexpr TypeRow kTypes[] = {{"float", "Float32", 4, loadReal<float>},
-                              {"double", "Float64", 8, loadReal<double>},
-                              {"int", "Int32", 4, loadReal<std::int32_t>},
-                              {"vtktypeint64", "Int64", 8, loadReal<std::int64_t>},
-                              {"vtkIdType", "Int64", 4, loadReal<std::int32_t>},
-                              {"long", "Int64", 8, loadReal<std::int64_t>},
-                              {"unsigned_int", "UInt32", 4, loadReal<std::uint32_t>},
-                              {"unsigned_long", "UInt64", 8, loadReal<std::uint64_t>},
-                              {"short", "Int16", 2, loadReal<std::int16_t>},
-                              {"unsigned_short", "UInt16", 2, loadReal<std::uint16_t>},
-                              {"char", "Int8", 1, loadReal<std::int8_t>},
-                              {"signed_char", "Int8", 1, loadReal<std::int8_t>},
-                              {"unsigned_char", "UInt8", 1, loadReal<std::uint8_t>},
-                              {"vtktypeuint64", "UInt64", 8, loadReal<std::uint64_t>}};
+// Names in legacy files.
+constexpr std::pair<std::string_view, StoredType> kLegacyTypes[] = {
+    {"float", StoredType::Float32},       {"double", StoredType::Float64},
+    {"int", StoredType::Int32},           {"vtktypeint64", StoredType::Int64},
+    {"vtkIdType", StoredType::Int32},     {"long", StoredType::Int64},
+    {"unsigned_int", StoredType::UInt32}, {"unsigned_long", StoredType::UInt64},
+    {"short", StoredType::Int16},         {"unsigned_short", StoredType::UInt16},
+    {"char", StoredType::Int8},           {"signed_char", StoredType::Int8},
+    {"unsigned_char", StoredType::UInt8}, {"vtktypeuint64", StoredType::UInt64}};
 
 std::vector<std::int64_t> wholeOf(const std::filesystem::path& path, std::vector<double> values) {
   std::vector<std::int64_t> whole;
@@ -49,20 +37,6 @@ void checkCells(const std::filesystem::path& path, const CellList& cells) {
     rising = rising && cells.offsets[c] >= cells.offsets[c - 1];
   }
   if (!rising) failToRead(path, "has cells whose offsets do not fit; it is damaged");
-}
-
-void addMaps(std::vector<VertexMap>& maps, const std::string& name,
-             const std::vector<double>& values, std::size_t components) {
-  const std::size_t rows = values.size() / components;
-  for (std::size_t c = 0; c < components; ++c) {
-    VertexMap map;
-    map.name = components > 1 ? name + "[" + std::to_string(c) + "]" : name;
-    map.values.resize(static_cast<Eigen::Index>(rows));
-    for (std::size_t row = 0; row < rows; ++row) {
-      map.values[row] = values[row * components + c];
-    }
-    maps.push_back(std::move(map));
-  }
 }
 
 /// The legacy format: keywords and values, text or big-endian binary.
@@ -96,8 +70,7 @@ class LegacyReader {
   void section(std::string_view keyword) {
     if (keyword == "POINTS") {
       const std::int64_t count = whole();
-      const TypeRow& type = typeOf(cursor_.word());
-      data_.coordinates = values(count, 3, type);
+      data_.coordinates = values(count, 3, typeOf(cursor_.word()));
     } else if (keyword == "LINES") {
       data_.lines = cells();
     } else if (keyword == "POLYGONS") {
@@ -106,12 +79,9 @@ class LegacyReader {
       data_.strips = cells();
     } else if (keyword == "VERTICES") {
       static_cast<void>(cells());
-    } else if (keyword == "POINT_DATA") {
+    } else if (keyword == "POINT_DATA" || keyword == "CELL_DATA") {
       rows_ = whole();
-      ofPoints_ = true;
-    } else if (keyword == "CELL_DATA") {
-      rows_ = whole();
-      ofPoints_ = false;
+      ofPoints_ = keyword == "POINT_DATA";
     } else if (keyword == "SCALARS") {
       scalars();
     } else if (keyword == "COLOR_SCALARS") {
@@ -122,15 +92,12 @@ class LegacyReader {
       static_cast<void>(cursor_.word());
       const std::int64_t entries = whole();
       static_cast<void>(values(entries, 4, typeOf(text_ ? "float" : "unsigned_char")));
-    } else if (keyword == "VECTORS" || keyword == "NORMALS") {
+    } else if (keyword == "VECTORS" || keyword == "NORMALS" || keyword == "TENSORS" ||
+               keyword == "TEXTURE_COORDINATES") {
       const std::string name(cursor_.word());
-      keep(name, values(rows_, 3, typeOf(cursor_.word())), 3);
-    } else if (keyword == "TENSORS") {
-      const std::string name(cursor_.word());
-      keep(name, values(rows_, 9, typeOf(cursor_.word())), 9);
-    } else if (keyword == "TEXTURE_COORDINATES") {
-      const std::string name(cursor_.word());
-      const std::int64_t components = whole();
+      const std::int64_t components = keyword == "TEXTURE_COORDINATES" ? whole()
+                                      : keyword == "TENSORS"           ? 9
+                                                                       : 3;
       keep(name, values(rows_, components, typeOf(cursor_.word())), components);
     } else if (keyword == "FIELD") {
       field();
@@ -143,33 +110,28 @@ class LegacyReader {
 
   std::int64_t whole() { return parseNumber<std::int64_t>(path_, cursor_.word()); }
 
-  const TypeRow& typeOf(std::string_view word) const {
-    for (const TypeRow& row : kTypes) {
-      if (row.legacy == word) return row;
+  StoredType typeOf(std::string_view word) const {
+    for (const auto& [name, type] : kLegacyTypes) {
+      if (name == word) return type;
     }
     failToRead(path_, "has the unknown VTK type '" + std::string(word.substr(0, 40)) + "'");
   }
 
-  std::vector<double> values(std::int64_t rows, std::int64_t columns, const TypeRow& type) {
+  std::vector<double> values(std::int64_t rows, std::int64_t columns, StoredType type) {
     constexpr std::int64_t kMostColumns = 1024;  // of a map; beyond it a header is damaged
     if (columns < 1 || columns > kMostColumns) failToRead(path_, "has arrays of no sensible width");
     if (!text_) static_cast<void>(cursor_.line());
-    const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 2 : type.width);
+    const std::size_t each = static_cast<std::size_t>(columns) * (text_ ? 2 : widthOf(type));
     const std::size_t count = checkedCount(path_, rows, cursor_.left() + 1, each, "values") *
                               static_cast<std::size_t>(columns);
+    if (!text_) return realsOf(cursor_.view(count * widthOf(type)), type, true);
     std::vector<double> result(count);
-    if (text_) {
-      for (double& value : result) value = parseNumber<double>(path_, lowered(cursor_.word()));
-    } else {
-      const ByteView raw = cursor_.view(count * type.width);
-      for (std::size_t i = 0; i < count; ++i) {
-        result[i] = type.load(raw.data() + i * type.width, true);
-      }
+    for (double& value : result) {
+      const std::string_view word = cursor_.word();
+      value = parseNumber<double>(path_, word == "NaN" ? "nan" : word);
     }
     return result;
   }
-
-  static std::string_view lowered(std::string_view word) { return word == "NaN" ? "nan" : word; }
 
   CellList cells() {
     const std::int64_t first = whole();
@@ -177,12 +139,10 @@ class LegacyReader {
     CellList list;
     const std::size_t before = cursor_.position();
     if (cursor_.word() == "OFFSETS") {  // version 5: offsets, then connectivity
-      const TypeRow& offsetType = typeOf(cursor_.word());
-      list.offsets = wholeOf(path_, values(first, 1, offsetType));
+      list.offsets = wholeOf(path_, values(first, 1, typeOf(cursor_.word())));
       if (list.offsets.empty()) list.offsets = {0};
       if (cursor_.word() != "CONNECTIVITY") failToRead(path_, "has cells without connectivity");
-      const TypeRow& type = typeOf(cursor_.word());
-      list.connectivity = wholeOf(path_, values(second, 1, type));
+      list.connectivity = wholeOf(path_, values(second, 1, typeOf(cursor_.word())));
     } else {  // each cell: its length and its vertices
       cursor_.moveTo(before);
       const std::vector<std::int64_t> all = wholeOf(path_, values(second, 1, typeOf("int")));
@@ -205,7 +165,7 @@ class LegacyReader {
 
   void scalars() {
     const std::string name(cursor_.word());
-    const TypeRow& type = typeOf(cursor_.word());
+    const StoredType type = typeOf(cursor_.word());
     std::int64_t components = 1;
     std::size_t before = cursor_.position();
     std::string_view next = cursor_.word();
@@ -259,7 +219,7 @@ class LegacyReader {
   }
 
   void keep(const std::string& name, const std::vector<double>& all, std::int64_t components) {
-    if (ofPoints_) addMaps(data_.pointMaps, name, all, static_cast<std::size_t>(components));
+    if (ofPoints_) addColumns(data_.pointMaps, name, "", all, static_cast<std::size_t>(components));
   }
 
   const std::filesystem::path& path_;
@@ -343,7 +303,7 @@ class XmlReader {
       if (width < 1 || values.size() != static_cast<std::size_t>(width) * points) {
         failToRead(path_, "has a point array '" + array["Name"] + "' of the wrong length");
       }
-      addMaps(data.pointMaps, array["Name"], values, static_cast<std::size_t>(width));
+      addColumns(data.pointMaps, array["Name"], "", values, static_cast<std::size_t>(width));
     }
   }
 
@@ -385,17 +345,9 @@ class XmlReader {
       }
       return values;
     }
-    const TypeRow* type = nullptr;
-    for (const TypeRow& row : kTypes) {
-      if (row.xml == array["type"] && (row.xml != "Int64" || row.width == 8)) type = &row;
-    }
-    if (type == nullptr) failToRead(path_, "has the unknown VTK type '" + array["type"] + "'");
-    const Bytes raw = rawOf(array);
-    std::vector<double> values(raw.size() / type->width);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = type->load(raw.data() + i * type->width, bigEndian_);
-    }
-    return values;
+    const auto type = typeNamed(array["type"]);
+    if (!type) failToRead(path_, "has the unknown VTK type '" + array["type"] + "'");
+    return realsOf(rawOf(array), *type, bigEndian_);
   }
 
   /// The bytes of an array that is no text.
@@ -434,32 +386,31 @@ class XmlReader {
   Bytes base64Block(std::string_view text) const {
     const auto charactersFor = [](std::size_t bytes) { return (bytes + 2) / 3 * 4; };
     text = text.substr(0, text.find_first_not_of(std::string(kBase64) + "="));
+    // The number at the beginning of some bytes: what follows is no longer than the text.
+    const auto count = [&](const Bytes& header) {
+      ByteCursor cursor(path_, header, bigEndian_);
+      const std::uint64_t number = headerNumber(cursor);
+      if (number > text.size()) failTruncated(path_, "an array ends too early");
+      return number;
+    };
     if (!packed_) {
       const std::string_view start = text.substr(0, charactersFor(headerWidth()));
-      const Bytes header = decodeBase64(path_, start);
-      ByteCursor cursor(path_, header, bigEndian_);
-      const std::uint64_t size = headerNumber(cursor);
-      if (size > text.size()) failTruncated(path_, "an array ends too early");
-      if (start.find('=') != std::string_view::npos) {
-        Bytes body = decodeBase64(path_, text.substr(start.size(), charactersFor(size)));
-        if (body.size() < size) failTruncated(path_, "an array ends too early");
-        body.resize(size);
-        return body;
+      const std::uint64_t size = count(decodeBase64(path_, start));
+      if (start.find('=') == std::string_view::npos) {
+        return rawBlock(decodeBase64(path_, text.substr(0, charactersFor(headerWidth() + size))));
       }
-      const Bytes all = decodeBase64(path_, text.substr(0, charactersFor(headerWidth() + size)));
-      return rawBlock(all);
+      Bytes body = decodeBase64(path_, text.substr(start.size(), charactersFor(size)));
+      if (body.size() < size) failTruncated(path_, "an array ends too early");
+      body.resize(size);
+      return body;
     }
-    const std::size_t three = charactersFor(3 * headerWidth());
-    Bytes header = decodeBase64(path_, text.substr(0, three));
-    ByteCursor first(path_, header, bigEndian_);
-    const std::uint64_t blocks = headerNumber(first);
-    if (blocks > text.size()) failTruncated(path_, "an array ends too early");
+    const std::uint64_t blocks =
+        count(decodeBase64(path_, text.substr(0, charactersFor(3 * headerWidth()))));
     const std::size_t whole = charactersFor((3 + blocks) * headerWidth());
-    header = decodeBase64(path_, text.substr(0, whole));
-    ByteCursor cursor(path_, header, bigEndian_);
-    const std::uint64_t count = headerNumber(cursor);
-    const std::vector<std::uint64_t> sizes = blockSizes(count, cursor);
+    Bytes bytes = decodeBase64(path_, text.substr(0, whole));
     const Bytes body = decodeBase64(path_, text.substr(std::min(whole, text.size())));
+    ByteCursor cursor(path_, bytes, bigEndian_);
+    const std::vector<std::uint64_t> sizes = blockSizes(headerNumber(cursor), cursor);
     ByteCursor bodyCursor(path_, body, bigEndian_);
     return unpacked(sizes, bodyCursor);
   }

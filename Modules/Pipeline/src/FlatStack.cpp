@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Pipeline/FlatStack.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeSeries.h"
 #include "Explica/Provenance/Json.h"
@@ -71,9 +72,7 @@ report::ColourScale greyScaleOf(const Volume<float>& stack, const std::string& n
   std::vector<double> known;
   std::ranges::copy_if(stack.data, std::back_inserter(known),
                        [](float v) { return std::isfinite(v); });
-  return report::scaleFor(
-      Eigen::Map<const Eigen::VectorXd>(known.data(), static_cast<Eigen::Index>(known.size())),
-      name, "", report::ColourMap::Grey);
+  return report::scaleFor(asVector(known), name, "", report::ColourMap::Grey);
 }
 
 }  // namespace

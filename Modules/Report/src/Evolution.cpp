@@ -3,6 +3,7 @@
 #include "Explica/Report/Evolution.h"
 
 #include "Encoding.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Report/SurfacePicture.h"
 
@@ -106,19 +107,11 @@ Evolution evolutionOf(const std::vector<TriangleMesh>& frames) {
 
 std::string evolutionJson(const Evolution& evolution) {
   const TriangleMesh& mesh = evolution.mesh;
-  Point low = mesh.positions.colwise().minCoeff().transpose();
-  Point high = mesh.positions.colwise().maxCoeff().transpose();
-  for (const Positions& frame : evolution.frames) {
-    if (frame.rows() == 0) continue;
-    low = low.cwiseMin(frame.colwise().minCoeff().transpose());
-    high = high.cwiseMax(frame.colwise().maxCoeff().transpose());
-  }
-  for (const EvolutionShape& shape : evolution.shapes) {
-    if (shape.positions.rows() == 0) continue;
-    low = low.cwiseMin(shape.positions.colwise().minCoeff().transpose());
-    high = high.cwiseMax(shape.positions.colwise().maxCoeff().transpose());
-  }
-  const double unit = std::max((high - low).maxCoeff(), 1e-9) / kSteps;
+  Eigen::AlignedBox3d box = boundingBox(mesh.positions);
+  for (const Positions& frame : evolution.frames) box.extend(boundingBox(frame));
+  for (const EvolutionShape& shape : evolution.shapes) box.extend(boundingBox(shape.positions));
+  const Point low = box.min();
+  const double unit = std::max(box.sizes().maxCoeff(), 1e-9) / kSteps;
   const auto quantise = [&](double x, int axis) {
     return static_cast<std::int32_t>(std::lround((x - low[axis]) / unit));
   };

@@ -103,68 +103,29 @@ Picture surfaceFigure(const TriangleMesh& mesh, const SurfacePaint& paint,
 
 Picture withColourBar(Picture tiled, const SurfacePaint& paint) {
   if (paint.values.size() == 0) return tiled;
-  constexpr int kGap = 10;  // pixels
+  constexpr int kBeside = 10;  // pixels
   const int barHeight = std::min(std::max(tiled.height * 3 / 5, 120), tiled.height);
   const double letters = std::clamp(barHeight / 24.0, 8.0, 14.0);
   const int width =
-      std::max({90, std::min(130, tiled.height / 5 - 2 * kGap),
+      std::max({90, std::min(130, tiled.height / 5 - 2 * kBeside),
                 static_cast<int>(std::ceil(textWidth(barTitle(paint.scale), letters)))});
-  Canvas whole(tiled.width + width + 2 * kGap, tiled.height);
+  Canvas whole(tiled.width + width + 2 * kBeside, tiled.height);
   drawColourBar(whole, paint.scale,
-                {tiled.width + kGap, (tiled.height - barHeight) / 2 + 3 * letters},
+                {tiled.width + kBeside, (tiled.height - barHeight) / 2 + 3 * letters},
                 {width / 6.0, barHeight - 4 * letters}, letters);
   const Point2 size(tiled.width, tiled.height);
   whole.image({0, 0}, size, std::move(tiled));
   return whole.picture();
 }
 
-WorldBox boxAbove(const Volume<float>& image, double threshold) {
-  WorldBox box;
+Eigen::AlignedBox3d boxAbove(const Volume<float>& image, double threshold) {
+  Eigen::AlignedBox3d box;
   for (std::size_t v = 0; v < image.size(); ++v) {
     if (!(image[v] > threshold)) continue;
     const auto [i, j, k] = image.grid.subscripts(v);
-    const Point p = image.grid.toWorld(Vector(i, j, k));
-    box.low = box.low.cwiseMin(p);
-    box.high = box.high.cwiseMax(p);
+    box.extend(image.grid.toWorld(Vector(i, j, k)));
   }
   return box;
-}
-
-Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours, int count,
-                    int height) {
-  WorldBox box;
-  for (const Contour& contour : contours) box.add(*contour.mesh);
-  const WorldBox tissue = boxAbove(image, 0);
-  if (box.empty()) box = tissue;
-  if (box.empty()) throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
-  const ColourScale grey = greyScale(image, nullptr);
-  WorldBox frame = tissue.empty() ? box : tissue;
-  std::vector<Picture> rows;
-  for (const SliceAxis axis : {SliceAxis::Axial, SliceAxis::Coronal, SliceAxis::Sagittal}) {
-    const int normal = axis == SliceAxis::Sagittal ? 0 : (axis == SliceAxis::Coronal ? 1 : 2);
-    std::vector<Picture> slices;
-    for (int s = 0; s < count; ++s) {
-      const double share = (s + 1.0) / (count + 1.0);
-      // A little off the vertices' likely lattice, so that no plane runs along faces.
-      const double at = box.low[normal] + share * (box.high[normal] - box.low[normal]) + 1e-4;
-      Picture slice =
-          renderSlice(image, frameAround(axis, at, frame.low, frame.high, height), grey, contours);
-      const char letter = normal == 0 ? 'x' : (normal == 1 ? 'y' : 'z');
-      drawText(slice,
-               std::string(1, letter) + " = " + std::to_string(static_cast<int>(std::lround(at))) +
-                   " mm",
-               {8, height - 8.0}, 9, {0.8f, 0.8f, 0.8f});
-      slices.push_back(std::move(slice));
-    }
-    rows.push_back(tilePictures(slices, count));
-  }
-  int width = 0;
-  for (const Picture& row : rows) width = std::max(width, row.width);
-  Picture whole(width, height * static_cast<int>(rows.size()), {0, 0, 0});
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    pastePicture(whole, rows[r], (width - rows[r].width) / 2, static_cast<int>(r) * height);
-  }
-  return whole;
 }
 
 }  // namespace explica::report

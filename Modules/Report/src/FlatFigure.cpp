@@ -3,6 +3,7 @@
 
 #include "Explica/Report/FlatFigure.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
@@ -173,8 +174,7 @@ Canvas flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Flat
   FigureView above;
   above.towards = Vector(0, 0, -1);
   above.up = Vector(0, 1, 0);
-  const Vector size =
-      (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).transpose();
+  const Vector size = boundingBox(mesh.positions).sizes();
   SurfacePictureOptions options{
       .width = static_cast<int>(
           std::clamp(height * size.x() / std::max(size.y(), 1e-9), height / 2.0, 2.0 * height)),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Mosaic.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/OrderStatistics.h"
 #include "Explica/Core/Text.h"
@@ -20,17 +21,17 @@ constexpr double kOffLattice = 1e-4;  // mm: no plane runs along a surface's fac
 
 /// What a mosaic shows, and the box of the world that each tile frames.
 struct Extent {
-  WorldBox shown;   ///< over which the slices are spaced
-  WorldBox framed;  ///< what a tile holds
+  Eigen::AlignedBox3d shown;   ///< over which the slices are spaced
+  Eigen::AlignedBox3d framed;  ///< what a tile holds
 };
 
-Extent extentOf(const WorldBox& tissue, const std::vector<MosaicOutline>& outlines) {
-  WorldBox lines;
-  for (const MosaicOutline& outline : outlines) lines.add(*outline.mesh);
-  if (lines.empty() && tissue.empty()) {
+Extent extentOf(const Eigen::AlignedBox3d& tissue, const std::vector<MosaicOutline>& outlines) {
+  Eigen::AlignedBox3d lines;
+  for (const MosaicOutline& outline : outlines) lines.extend(boundingBox(outline.mesh->positions));
+  if (lines.isEmpty() && tissue.isEmpty()) {
     throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
   }
-  return {lines.empty() ? tissue : lines, tissue.empty() ? lines : tissue};
+  return {lines.isEmpty() ? tissue : lines, tissue.isEmpty() ? lines : tissue};
 }
 
 /// Of a line's points those that lie apart by what can be seen, and its ends; from one to the next
@@ -115,10 +116,10 @@ SliceMosaic mosaicOf(const Extent& extent, const std::vector<MosaicOutline>& out
     std::vector<MosaicTile> row;
     for (int s = 0; s < options.perRow; ++s) {
       const double share = (s + 1.0) / (options.perRow + 1.0);
-      const double at =
-          extent.shown.low[normal] + share * (extent.shown.high[normal] - extent.shown.low[normal]);
-      SliceFrame frame = frameAround(axis, at + kOffLattice, extent.framed.low, extent.framed.high,
-                                     options.tileHeight);
+      const double low = extent.shown.min()[normal];
+      const double at = low + share * (extent.shown.max()[normal] - low);
+      SliceFrame frame = frameAround(axis, at + kOffLattice, extent.framed.min(),
+                                     extent.framed.max(), options.tileHeight);
       frame.leftOnRight = options.convention == SideConvention::Radiological;
       MosaicTile tile = tileOf(frame, outlines, render);
       tile.place = placeWords(axis, at);
@@ -151,6 +152,32 @@ SliceMosaic makeMosaic(const Volume<float>& image, const std::vector<MosaicOutli
   const ColourScale grey = greyScale(image, options.subject);
   return mosaicOf(extentOf(boxAbove(image, 0), outlines), outlines, options,
                   [&](const SliceFrame& frame) { return renderSlice(image, frame, grey); });
+}
+
+Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours, int count,
+                    int height) {
+  std::vector<MosaicOutline> outlines;
+  for (const Contour& contour : contours) outlines.push_back({contour.mesh, "", ""});
+  const ColourScale grey = greyScale(image, nullptr);
+  SliceMosaic mosaic =
+      mosaicOf(extentOf(boxAbove(image, 0), outlines), {}, {.perRow = count, .tileHeight = height},
+               [&](const SliceFrame& frame) { return renderSlice(image, frame, grey, contours); });
+  std::vector<Picture> rows;
+  int width = 0;
+  for (std::vector<MosaicTile>& tiles : mosaic.rows) {
+    std::vector<Picture> slices;
+    for (MosaicTile& tile : tiles) {
+      drawText(tile.picture, tile.place, {8, height - 8.0}, 9, {0.8f, 0.8f, 0.8f});
+      slices.push_back(std::move(tile.picture));
+    }
+    rows.push_back(tilePictures(slices, count));
+    width = std::max(width, rows.back().width);
+  }
+  Picture whole(width, height * static_cast<int>(rows.size()), {0, 0, 0});
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    pastePicture(whole, rows[r], (width - rows[r].width) / 2, static_cast<int>(r) * height);
+  }
+  return whole;
 }
 
 SliceMosaic makeCloseUps(const Volume<float>& image, const std::vector<MosaicOutline>& outlines,
@@ -194,7 +221,7 @@ std::array<SliceMosaic, 2> makeMosaics(const Volume<float>& before, const Volume
     throw InvalidInput("after: is of another size than before");
   }
   Extent extent{boxAbove(after, 0), boxAbove(before, 0)};
-  if (extent.shown.empty() || extent.framed.empty()) {
+  if (extent.shown.isEmpty() || extent.framed.isEmpty()) {
     throw InvalidInput("volume: every voxel is 0 or less; there is nothing to show");
   }
   const ColourScale grey = greyScale(after, options.subject);

@@ -22,31 +22,16 @@ struct Word {
 };
 
 Word wordFor(StepState state) {
-  switch (state) {
-    case StepState::Done:
-      return {"good", "done"};
-    case StepState::StoppedEarly:
-      return {"notice", "stopped early"};
-    case StepState::Interrupted:
-      return {"notice", "interrupted"};
-    case StepState::Failed:
-      return {"bad", "failed"};
-    default:
-      return {"missing", "not run"};
-  }
+  constexpr std::array kWords = {Word{"good", "done"}, Word{"notice", "stopped early"},
+                                 Word{"notice", "interrupted"}, Word{"bad", "failed"},
+                                 Word{"missing", "not run"}};
+  return kWords[static_cast<std::size_t>(state)];
 }
 
 Word wordFor(FlagLevel level) {
-  switch (level) {
-    case FlagLevel::Good:
-      return {"good", "right"};
-    case FlagLevel::Remark:
-      return {"missing", "remark"};
-    case FlagLevel::Notice:
-      return {"notice", "look"};
-    default:
-      return {"bad", "wrong"};
-  }
+  constexpr std::array kWords = {Word{"good", "right"}, Word{"missing", "remark"},
+                                 Word{"notice", "look"}, Word{"bad", "wrong"}};
+  return kWords[static_cast<std::size_t>(level)];
 }
 
 std::string badge(const Word& word) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/Panels.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 
 #include <algorithm>
@@ -34,9 +35,7 @@ int heightOf(const std::vector<Panel>& row, int cell, int width) {
       height = std::max(height, kSurfaceShape * cell);
       continue;
     }
-    const Vector size =
-        (panel.mesh->positions.colwise().maxCoeff() - panel.mesh->positions.colwise().minCoeff())
-            .transpose();
+    const Vector size = boundingBox(panel.mesh->positions).sizes();
     const double shape = std::clamp(size.x() / std::max(size.y(), 1e-9), 0.5, 2.0);
     height = std::max(height, std::min(kFlatShare * width, cell / shape));
   }

@@ -115,6 +115,21 @@ std::vector<Segment2> cutLines(const TriangleMesh& mesh, const SliceFrame& frame
   return lines;
 }
 
+/// Pixels of the colours at their middles; black where there is none.
+template <class ColourAt>
+Picture drawn(int width, int height, const ColourAt& colourAt) {
+  Picture picture(width, height, {0, 0, 0});
+  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t y) {
+    for (int x = 0; x < width; ++x) {
+      const std::optional<Colour> colour = colourAt(x + 0.5, static_cast<double>(y) + 0.5);
+      for (int c = 0; colour && c < 3; ++c) {
+        picture.pixel(x, static_cast<int>(y))[c] = encodeSrgb((*colour)[c]);
+      }
+    }
+  });
+  return picture;
+}
+
 }  // namespace
 
 SliceFrame frameAround(SliceAxis axis, double position, const Point& low, const Point& high,
@@ -134,17 +149,11 @@ SliceFrame frameAround(SliceAxis axis, double position, const Point& low, const 
 
 Picture renderPoints(const Volume<float>& image, int width, int height, const ColourScale& scale,
                      const std::function<Point(double x, double y)>& worldOf) {
-  Picture picture(width, height, {0, 0, 0});
-  parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t y) {
-    for (int x = 0; x < width; ++x) {
-      const Point world = worldOf(x + 0.5, static_cast<double>(y) + 0.5);
-      const double value = sample(image, image.grid.toIndex(world));
-      if (std::isnan(value)) continue;
-      const Colour colour = scale(value);
-      for (int c = 0; c < 3; ++c) picture.pixel(x, static_cast<int>(y))[c] = encodeSrgb(colour[c]);
-    }
+  return drawn(width, height, [&](double x, double y) -> std::optional<Colour> {
+    const double value = sample(image, image.grid.toIndex(worldOf(x, y)));
+    if (std::isnan(value)) return {};
+    return scale(value);
   });
-  return picture;
 }
 
 Picture renderSlice(const Volume<float>& image, const SliceFrame& frame, const ColourScale& scale,
@@ -195,30 +204,24 @@ std::vector<std::vector<Eigen::Vector2d>> cutPolylines(const TriangleMesh& mesh,
 }
 
 std::array<char, 4> directionLetters(const SliceFrame& frame) {
-  constexpr std::array<std::array<char, 2>, 3> kLetters = {{{'L', 'R'}, {'P', 'A'}, {'I', 'S'}}};
+  constexpr std::array<std::array<char, 2>, 3> kWays = {{{'L', 'R'}, {'P', 'A'}, {'I', 'S'}}};
   const PlaneAxes axes = axesOf(frame);
-  const auto& across = kLetters[axes.right];
-  const auto& along = kLetters[axes.up];
+  const auto& across = kWays[axes.right];
+  const auto& along = kWays[axes.up];
   const bool rising = axes.rightSign > 0;
   return {across[rising ? 0 : 1], across[rising ? 1 : 0], along[1], along[0]};
 }
 
 Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame) {
   const PlaneAxes axes = axesOf(frame);
-  Picture picture(frame.width, frame.height, {0, 0, 0});
-  parallelFor(static_cast<std::size_t>(frame.height), 16, [&](std::size_t y) {
-    for (int x = 0; x < frame.width; ++x) {
-      const Vector index =
-          labels.grid.toIndex(worldOf(frame, axes, x + 0.5, static_cast<double>(y) + 0.5));
-      const int i = static_cast<int>(std::lround(index.x()));
-      const int j = static_cast<int>(std::lround(index.y()));
-      const int k = static_cast<int>(std::lround(index.z()));
-      if (!labels.grid.contains(i, j, k) || labels(i, j, k) == 0) continue;
-      const Colour colour = colourOfLabel(labels(i, j, k));
-      for (int c = 0; c < 3; ++c) picture.pixel(x, static_cast<int>(y))[c] = encodeSrgb(colour[c]);
-    }
+  return drawn(frame.width, frame.height, [&](double x, double y) -> std::optional<Colour> {
+    const Vector index = labels.grid.toIndex(worldOf(frame, axes, x, y));
+    const int i = static_cast<int>(std::lround(index.x()));
+    const int j = static_cast<int>(std::lround(index.y()));
+    const int k = static_cast<int>(std::lround(index.z()));
+    if (!labels.grid.contains(i, j, k) || labels(i, j, k) == 0) return {};
+    return colourOfLabel(labels(i, j, k));
   });
-  return picture;
 }
 
 }  // namespace explica::report

@@ -3,6 +3,7 @@
 #include "Explica/Report/SliceStack.h"
 
 #include "Encoding.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Report/Figure.h"
 
@@ -25,15 +26,15 @@ struct Lattice {
 };
 
 Lattice latticeOf(const Grid& grid, const std::vector<MosaicOutline>& outlines) {
-  WorldBox box;
-  for (const MosaicOutline& outline : outlines) box.add(*outline.mesh);
-  if (box.empty()) throw InvalidInput("outlines: none has vertices");
-  const Vector extent = box.high - box.low + Vector::Constant(2 * kAround);
+  Eigen::AlignedBox3d box;
+  for (const MosaicOutline& outline : outlines) box.extend(boundingBox(outline.mesh->positions));
+  if (box.isEmpty()) throw InvalidInput("outlines: none has vertices");
+  const Vector extent = box.sizes() + Vector::Constant(2 * kAround);
   Lattice lattice;
   lattice.step = std::max(grid.spacing.minCoeff(), std::cbrt(extent.prod() / kMostVoxels));
   const Point first = grid.toWorld(Vector::Zero());
   for (int a = 0; a < 3; ++a) {
-    const double steps = std::ceil((box.low[a] - kAround - first[a]) / lattice.step);
+    const double steps = std::ceil((box.min()[a] - kAround - first[a]) / lattice.step);
     lattice.low[a] = first[a] + lattice.step * steps;
     lattice.size[a] = 1 + static_cast<int>(extent[a] / lattice.step);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Report/SurfacePicture.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -172,7 +173,7 @@ struct SurfaceScene::Implementation::Tint {
 void SurfaceScene::Implementation::build(const TriangleMesh& mesh) {
   if (mesh.faceCount() == 0) throw InvalidInput("surface: no faces to draw");
   faces = mesh.faces;
-  diagonal = (mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff()).norm();
+  diagonal = boundingBox(mesh.positions).sizes().norm();
   skyReach = static_cast<float>(kSkyReach * diagonal);
   device.reset(rtcNewDevice(nullptr));
   if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
@@ -467,22 +468,15 @@ Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards, const Vect
 }
 
 Camera cameraFor(const TriangleMesh& mesh, ViewName view, int width, int height) {
-  const Vector superior(0, 0, 1);
-  const Vector anterior(0, 1, 0);
-  switch (view) {
-    case ViewName::Left:
-      return cameraTowards(mesh, Vector(1, 0, 0), superior, width, height);
-    case ViewName::Right:
-      return cameraTowards(mesh, Vector(-1, 0, 0), superior, width, height);
-    case ViewName::Front:
-      return cameraTowards(mesh, Vector(0, -1, 0), superior, width, height);
-    case ViewName::Back:
-      return cameraTowards(mesh, Vector(0, 1, 0), superior, width, height);
-    case ViewName::Top:
-      return cameraTowards(mesh, Vector(0, 0, -1), anterior, width, height);
-    default:
-      return cameraTowards(mesh, Vector(0, 0, 1), anterior, width, height);
-  }
+  const Vector superior(0, 0, 1), anterior(0, 1, 0);
+  const std::array<std::array<Vector, 2>, 6> sights = {{{Vector(1, 0, 0), superior},
+                                                        {Vector(-1, 0, 0), superior},
+                                                        {Vector(0, -1, 0), superior},
+                                                        {Vector(0, 1, 0), superior},
+                                                        {Vector(0, 0, -1), anterior},
+                                                        {Vector(0, 0, 1), anterior}}};
+  const auto& [towards, up] = sights[static_cast<std::size_t>(view)];
+  return cameraTowards(mesh, towards, up, width, height);
 }
 
 }  // namespace explica::report

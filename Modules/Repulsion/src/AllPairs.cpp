@@ -35,7 +35,7 @@ KnotValue AllPairs::evaluate(const Positions& positions) const {
       for (int c = 0; c < 3; ++c) force.byCorner[c] += 2 * pair.byS[c];
     }
   });
-  return assemble(*set_, positions, forces, adjacentPairs(*set_, positions, accuracy_));
+  return assemble(*set_, positions, forces, accuracy_);
 }
 
 }  // namespace explica::repulsion

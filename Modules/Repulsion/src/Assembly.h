@@ -6,6 +6,7 @@
 #include "Explica/Repulsion/PairIntegral.h"
 #include "MovingSet.h"
 
+#include <array>
 #include <vector>
 
 namespace explica::repulsion {
@@ -16,14 +17,11 @@ struct FaceForce {
   std::array<Vector, 3> byCorner{Vector::Zero(), Vector::Zero(), Vector::Zero()};
 };
 
-/// Energy of all pairs of faces with common corners: edge pairs first, then vertex pairs.
-[[nodiscard]] std::vector<PairIntegral> adjacentPairs(const MovingSet& set,
-                                                      const Positions& positions,
-                                                      PairAccuracy accuracy);
-
-/// Adds up in a fixed order.  `adjacent` as adjacentPairs() returns it; both of its orders count.
+/// Adds up, in a fixed order: the forces and both orders of all pairs of faces with common corners
+/// and of the pairs given besides.
+/// @param apart  pairs without common corners that `forces` lack, a moving face first
 [[nodiscard]] KnotValue assemble(const MovingSet& set, const Positions& positions,
-                                 const std::vector<FaceForce>& forces,
-                                 const std::vector<PairIntegral>& adjacent);
+                                 const std::vector<FaceForce>& forces, PairAccuracy accuracy,
+                                 const std::vector<std::array<std::int32_t, 2>>& apart = {});
 
 }  // namespace explica::repulsion

@@ -13,10 +13,6 @@
 namespace explica::repulsion {
 namespace {
 
-std::array<std::int32_t, 3> rowOf(const Faces& faces, std::int32_t f) {
-  return {faces(f, 0), faces(f, 1), faces(f, 2)};
-}
-
 bool contains(const std::array<std::int32_t, 3>& corners, std::int32_t v) {
   return corners[0] == v || corners[1] == v || corners[2] == v;
 }
@@ -80,7 +76,7 @@ MovingSet::MovingSet(const TriangleMesh& mesh, const std::vector<bool>& moves)
 
     for (const std::int32_t t : found) {
       if (t == s || (faceMoves[t] && t < s)) continue;
-      AdjacentPair pair{s, t, rowOf(faces, s), rowOf(faces, t)};
+      AdjacentPair pair{s, t, verticesOf(faces, s), verticesOf(faces, t)};
       const auto cornersS = pair.cornersS;
       const auto cornersT = pair.cornersT;
       const auto commonFirst = [](std::array<std::int32_t, 3>& row,

@@ -47,16 +47,19 @@ class MovingSet {
   std::vector<std::int32_t> touching_;
 };
 
-[[nodiscard]] inline Corners cornersOf(const Positions& positions, const Faces& faces,
-                                       std::int32_t face) {
-  return {positions.row(faces(face, 0)).transpose(), positions.row(faces(face, 1)).transpose(),
-          positions.row(faces(face, 2)).transpose()};
+[[nodiscard]] inline std::array<std::int32_t, 3> verticesOf(const Faces& faces, std::int32_t face) {
+  return {faces(face, 0), faces(face, 1), faces(face, 2)};
 }
 
 [[nodiscard]] inline Corners cornersOf(const Positions& positions,
                                        const std::array<std::int32_t, 3>& v) {
   return {positions.row(v[0]).transpose(), positions.row(v[1]).transpose(),
           positions.row(v[2]).transpose()};
+}
+
+[[nodiscard]] inline Corners cornersOf(const Positions& positions, const Faces& faces,
+                                       std::int32_t face) {
+  return cornersOf(positions, verticesOf(faces, face));
 }
 
 /// Area of a face and its unit normal by the right-hand rule; zero normal for zero area.

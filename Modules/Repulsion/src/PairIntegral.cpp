@@ -6,26 +6,38 @@
 #include "MovingSet.h"
 #include "Quadrature.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
 
 namespace explica::repulsion {
 namespace {
 
-/// Part of a point, segment or triangle: corners as points and as coordinates in the whole.
+/// Part of a point, segment or triangle: corners as points and as coordinates in the whole, a row
+/// each; rows that a segment or point lacks are zero.
 struct Simplex {
   int corners = 3;
-  std::array<Point, 3> point;
-  std::array<Vector, 3> lambda;
-  Point centre;
+  Eigen::Matrix3d point = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d lambda = Eigen::Matrix3d::Identity();
+  Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
   double radius = 0;  // farthest corner from the centre
   double share = 1;   // of the whole's measure
 
   void measure() {
-    centre.setZero();
-    for (int k = 0; k < corners; ++k) centre += point[k];
-    centre /= corners;
-    radius = 0;
-    for (int k = 0; k < corners; ++k) radius = std::max(radius, (point[k] - centre).norm());
+    centre = point.topRows(corners).colwise().sum() / corners;
+    double farthest = 0;
+    for (int k = 0; k < corners; ++k) {
+      farthest = std::max(farthest, (point.row(k) - centre).squaredNorm());
+    }
+    radius = std::sqrt(farthest);
+  }
+  /// Derivatives by the whole's corners from those by its own, a row each.
+  [[nodiscard]] Eigen::Matrix3d inWhole(const Eigen::Matrix3d& byCorner) const {
+    if (share == 1) return byCorner;
+    return lambda.transpose() * byCorner;
   }
 };
 
@@ -33,37 +45,29 @@ Simplex whole(std::initializer_list<Point> points) {
   Simplex s;
   s.corners = static_cast<int>(points.size());
   int k = 0;
-  for (const Point& p : points) {
-    s.point[k] = p;
-    s.lambda[k] = Vector::Unit(k);
-    ++k;
-  }
+  for (const Point& p : points) s.point.row(k++) = p.transpose();
   s.measure();
   return s;
 }
 
 /// The two halves, cut across the longest edge.
 std::array<Simplex, 2> halves(const Simplex& s) {
-  int from = 0;
-  int to = 1;
+  int from = 0, to = 1;
+  const auto squaredLength = [&](int i, int j) {
+    return (s.point.row(i) - s.point.row(j)).squaredNorm();
+  };
   for (int i = 0; i < s.corners; ++i) {
     for (int j = i + 1; j < s.corners; ++j) {
-      if ((s.point[i] - s.point[j]).squaredNorm() > (s.point[from] - s.point[to]).squaredNorm()) {
-        from = i;
-        to = j;
-      }
+      if (squaredLength(i, j) > squaredLength(from, to)) std::tie(from, to) = std::pair(i, j);
     }
   }
-  const Point middle = (s.point[from] + s.point[to]) / 2;
-  const Vector lambda = (s.lambda[from] + s.lambda[to]) / 2;
   std::array<Simplex, 2> parts = {s, s};
-  parts[0].point[to] = middle;
-  parts[0].lambda[to] = lambda;
-  parts[1].point[from] = middle;
-  parts[1].lambda[from] = lambda;
-  for (Simplex& part : parts) {
-    part.share /= 2;
-    part.measure();
+  for (int half = 0; half < 2; ++half) {
+    const int moved = half == 0 ? to : from;
+    parts[half].point.row(moved) = (s.point.row(from) + s.point.row(to)) / 2;
+    parts[half].lambda.row(moved) = (s.lambda.row(from) + s.lambda.row(to)) / 2;
+    parts[half].share /= 2;
+    parts[half].measure();
   }
   return parts;
 }
@@ -75,7 +79,7 @@ struct Ladder {
   double sixteen;  // degree 8; below it the larger simplex is halved
   int depth;       // halvings at most
 };
-constexpr Ladder kCoarse = {4.0, 1.0, 0.6, 12};   // relative error about 1e-3
+constexpr Ladder kCoarse = {4.0, 0.9, 0.5, 12};   // relative error about 1e-3
 constexpr Ladder kStandard = {14, 4.5, 2.0, 20};  // 1e-6, except needles
 constexpr Ladder kFine = {200, 14, 4.0, 28};      // 1e-9
 
@@ -91,39 +95,49 @@ const Ladder& ladderFor(PairAccuracy accuracy) {
   return kStandard;
 }
 
-Rule ruleFor(int corners, double ratio, const Ladder& ladder) {
+const Rule& ruleFor(int corners, double ratio, const Ladder& ladder) {
   if (corners == 1) return pointRule();
   if (ratio >= ladder.three) return corners == 2 ? segmentRule2() : triangleRule3();
   if (ratio >= ladder.seven) return corners == 2 ? segmentRule3() : triangleRule7();
   return corners == 2 ? segmentRule5() : triangleRule16();
 }
 
-/// Mean of 1/|x - y|^2 over A x B with derivatives by the corners of A and B.
+/// Mean of 1/|x - y|^2 over A x B with derivatives by the corners of A and B, a row each.
 struct Mean {
   double value = 0;
-  std::array<Vector, 3> byA{Vector::Zero(), Vector::Zero(), Vector::Zero()};
-  std::array<Vector, 3> byB{Vector::Zero(), Vector::Zero(), Vector::Zero()};
+  Eigen::Matrix3d byA = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d byB = Eigen::Matrix3d::Zero();
 };
 
-struct Node {
-  Point x;
-  Vector lambda;
-  double weight;
-};
-
-int placeNodes(const Simplex& s, Rule rule, std::array<Node, 16>& nodes) {
-  int n = 0;
-  for (const RulePoint& r : rule) {
-    Node& node = nodes[n++];
-    node.x.setZero();
-    node.lambda.setZero();
-    for (int k = 0; k < s.corners; ++k) {
-      node.x += r.lambda[k] * s.point[k];
-      node.lambda += r.lambda[k] * s.lambda[k];
+/// Adds the mean by a product rule, with M points on B.
+template <int M>
+void addByRule(const Simplex& a, const Rule& ruleA, const Simplex& b, const Rule& ruleB,
+               Mean& mean) {
+  using Column = Eigen::Array<double, M, 1>;
+  using Columns = Eigen::Array<double, M, 3>;
+  const auto lambdaB = ruleB.lambda.topRows<M>();
+  const Columns y = lambdaB.lazyProduct(b.point);
+  const Column weight = a.share * b.share * ruleB.weight.head<M>();
+  Columns onB = Columns::Zero();
+  Eigen::Matrix3d byA = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < ruleA.weight.size(); ++i) {
+    Columns z;
+    for (int k = 0; k < 3; ++k) z.col(k) = ruleA.lambda.row(i).dot(a.point.col(k)) - y.col(k);
+    const Column squared = z.col(0).square() + z.col(1).square() + z.col(2).square();
+    // Zero only where faces touch and the subdivision has ended.
+    const Column inverse = (squared > 0).select(squared.inverse(), 0);
+    const Column term = ruleA.weight[i] * weight * inverse;
+    const Column pull = -2 * term * inverse;
+    mean.value += term.sum();
+    for (int k = 0; k < 3; ++k) {
+      const Column force = pull * z.col(k);
+      byA.col(k) += force.sum() * ruleA.lambda.row(i).transpose();
+      onB.col(k) -= force;
     }
-    node.weight = r.weight * s.share;
   }
-  return n;
+  const Eigen::Matrix3d byB = lambdaB.transpose().lazyProduct(onB.matrix());
+  mean.byA += a.inWhole(byA);
+  mean.byB += b.inWhole(byB);
 }
 
 void addMean(const Simplex& a, const Simplex& b, const Ladder& ladder, int depth, Mean& mean) {
@@ -131,39 +145,23 @@ void addMean(const Simplex& a, const Simplex& b, const Ladder& ladder, int depth
   if (ratio < ladder.sixteen && depth < ladder.depth) {
     const bool cutA = a.radius >= b.radius;
     for (const Simplex& part : halves(cutA ? a : b)) {
-      if (cutA) {
-        addMean(part, b, ladder, depth + 1, mean);
-      } else {
-        addMean(a, part, ladder, depth + 1, mean);
-      }
+      addMean(cutA ? part : a, cutA ? b : part, ladder, depth + 1, mean);
     }
     return;
   }
-  std::array<Node, 16> nodesA;
-  std::array<Node, 16> nodesB;
-  const int countA = placeNodes(a, ruleFor(a.corners, ratio, ladder), nodesA);
-  const int countB = placeNodes(b, ruleFor(b.corners, ratio, ladder), nodesB);
-  std::array<Vector, 16> onB;
-  onB.fill(Vector::Zero());
-  for (int i = 0; i < countA; ++i) {
-    Vector onA = Vector::Zero();
-    for (int j = 0; j < countB; ++j) {
-      const Vector z = nodesA[i].x - nodesB[j].x;
-      const double squared = z.squaredNorm();
-      if (squared == 0) continue;  // only where faces touch and the subdivision has ended
-      const double term = nodesA[i].weight * nodesB[j].weight / squared;
-      mean.value += term;
-      const Vector force = (-2 * term / squared) * z;
-      onA += force;
-      onB[j] -= force;
-    }
-    for (int k = 0; k < 3; ++k) mean.byA[k] += nodesA[i].lambda[k] * onA;
-  }
-  for (int j = 0; j < countB; ++j) {
-    for (int k = 0; k < 3; ++k) mean.byB[k] += nodesB[j].lambda[k] * onB[j];
+  const Rule& ruleA = ruleFor(a.corners, ratio, ladder);
+  const Rule& ruleB = ruleFor(b.corners, ratio, ladder);
+  switch (ruleB.weight.size()) {
+    case 3:
+      return addByRule<3>(a, ruleA, b, ruleB, mean);
+    case 7:
+      return addByRule<7>(a, ruleA, b, ruleB, mean);
+    default:
+      return addByRule<16>(a, ruleA, b, ruleB, mean);
   }
 }
 
+/// @param b  a triangle
 Mean meanOver(const Simplex& a, const Simplex& b, PairAccuracy accuracy) {
   Mean mean;
   addMean(a, b, ladderFor(accuracy), 0, mean);
@@ -171,15 +169,17 @@ Mean meanOver(const Simplex& a, const Simplex& b, PairAccuracy accuracy) {
 }
 
 /// Multiplies a mean and its derivatives by both areas.
-PairIntegral timesAreas(const PairIntegral& mean, const Corners& s, const Corners& t) {
+PairIntegral timesAreas(const Mean& mean, const Corners& s, const Corners& t) {
   const AreaGradient areaS = areaGradient(s);
   const AreaGradient areaT = areaGradient(t);
   const double product = areaS.area * areaT.area;
   PairIntegral result;
   result.value = product * mean.value;
   for (int k = 0; k < 3; ++k) {
-    result.byS[k] = product * mean.byS[k] + mean.value * areaT.area * areaS.byCorner[k];
-    result.byT[k] = product * mean.byT[k] + mean.value * areaS.area * areaT.byCorner[k];
+    result.byS[k] =
+        product * mean.byA.row(k).transpose() + mean.value * areaT.area * areaS.byCorner[k];
+    result.byT[k] =
+        product * mean.byB.row(k).transpose() + mean.value * areaS.area * areaT.byCorner[k];
   }
   return result;
 }
@@ -187,58 +187,47 @@ PairIntegral timesAreas(const PairIntegral& mean, const Corners& s, const Corner
 }  // namespace
 
 PairIntegral integrateApart(const Corners& s, const Corners& t, PairAccuracy accuracy) {
-  const Mean mean = meanOver(whole({s[0], s[1], s[2]}), whole({t[0], t[1], t[2]}), accuracy);
-  return timesAreas({mean.value, mean.byA, mean.byB}, s, t);
+  return timesAreas(meanOver(whole({s[0], s[1], s[2]}), whole({t[0], t[1], t[2]}), accuracy), s, t);
 }
 
 PairIntegral integrateVertexSharing(const Corners& s, const Corners& t, PairAccuracy accuracy) {
   const Mean edgeS = meanOver(whole({s[1], s[2]}), whole({t[0], t[1], t[2]}), accuracy);
-  const Mean edgeT = meanOver(whole({s[0], s[1], s[2]}), whole({t[1], t[2]}), accuracy);
-  PairIntegral mean;
-  mean.value = edgeS.value + edgeT.value;
-  mean.byS = edgeT.byA;
-  mean.byT = edgeS.byB;
-  for (int k = 0; k < 2; ++k) {
-    mean.byS[k + 1] += edgeS.byA[k];
-    mean.byT[k + 1] += edgeT.byB[k];
-  }
+  const Mean edgeT = meanOver(whole({t[1], t[2]}), whole({s[0], s[1], s[2]}), accuracy);
+  Mean mean{edgeS.value + edgeT.value, edgeT.byB, edgeS.byB};
+  mean.byA.bottomRows(2) += edgeS.byA.topRows(2);
+  mean.byB.bottomRows(2) += edgeT.byA.topRows(2);
   return timesAreas(mean, s, t);
 }
 
 PairIntegral integrateEdgeSharing(const Corners& s, const Corners& t, PairAccuracy accuracy) {
-  // Corners of the six triangles as multiples of e = q - p, a = s[2] - p, b = t[2] - p.
-  struct Multiple {
-    int e, a, b;
-  };
-  static constexpr Multiple kA = {0, 1, 0}, kE = {1, 0, 0}, kMinusB = {0, 0, -1},
-                            kMinusE = {-1, 0, 0}, kEminusB = {1, 0, -1}, kAminusB = {0, 1, -1},
-                            kAminusE = {-1, 1, 0};
-  static constexpr std::array<std::array<Multiple, 3>, 6> kTriangles = {
-      {{kA, kE, kEminusB},
-       {kA, kEminusB, kAminusB},
-       {kMinusB, kEminusB, kAminusB},
-       {kMinusB, kMinusE, kAminusE},
-       {kMinusB, kAminusE, kAminusB},
-       {kA, kAminusE, kAminusB}}};
-  const Vector e = s[1] - s[0];
-  const Vector a = s[2] - s[0];
-  const Vector b = t[2] - s[0];
+  // Corners of the six triangles, a row each, as multiples of e, a and b.
+  static const auto kTriangles = [] {
+    const Eigen::RowVector3d e(1, 0, 0), a(0, 1, 0), b(0, 0, 1);
+    std::array<Eigen::Matrix3d, 6> triangles;
+    triangles[0] << a, e, e - b;
+    triangles[1] << a, e - b, a - b;
+    triangles[2] << -b, e - b, a - b;
+    triangles[3] << -b, -e, a - e;
+    triangles[4] << -b, a - e, a - b;
+    triangles[5] << a, a - e, a - b;
+    return triangles;
+  }();
+  Eigen::Matrix3d sides;
+  sides << (s[1] - s[0]).transpose(), (s[2] - s[0]).transpose(), (t[2] - s[0]).transpose();
   const Simplex origin = whole({Point::Zero()});
-  const auto place = [&](const Multiple& m) { return Point(m.e * e + m.a * a + m.b * b); };
-
-  PairIntegral mean;
-  for (const auto& triangle : kTriangles) {
-    const Mean part = meanOver(whole({place(triangle[0]), place(triangle[1]), place(triangle[2])}),
-                               origin, accuracy);
-    mean.value += part.value;
-    for (int k = 0; k < 3; ++k) {
-      const Multiple& m = triangle[k];
-      mean.byS[0] -= (m.e + m.a + m.b) * part.byA[k];
-      mean.byS[1] += m.e * part.byA[k];
-      mean.byS[2] += m.a * part.byA[k];
-      mean.byT[2] += m.b * part.byA[k];
-    }
+  double value = 0;
+  Eigen::Matrix3d bySides = Eigen::Matrix3d::Zero();
+  for (const Eigen::Matrix3d& triangle : kTriangles) {
+    const Eigen::Matrix3d corners = triangle * sides;
+    const Mean part =
+        meanOver(origin, whole({corners.row(0), corners.row(1), corners.row(2)}), accuracy);
+    value += part.value;
+    bySides += triangle.transpose() * part.byB;
   }
+  Mean mean;
+  mean.value = value;
+  mean.byA << -bySides.colwise().sum(), bySides.row(0), bySides.row(1);
+  mean.byB.row(2) = bySides.row(2);
   return timesAreas(mean, s, t);
 }
 

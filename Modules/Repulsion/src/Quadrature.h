@@ -2,30 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <span>
+#include <Eigen/Core>
 
 namespace explica::repulsion {
 
-/// A point of a rule for means over a simplex: barycentric coordinates and weight.
-struct RulePoint {
-  std::array<double, 3> lambda;
-  double weight;
+/// Rule for means over a simplex: barycentric coordinates of each point, a row, and its weight.
+struct Rule {
+  static constexpr int kMostPoints = 16;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMostPoints, 3> lambda;
+  Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPoints, 1> weight;
 };
-using Rule = std::span<const RulePoint>;
 
 /// Symmetric rules on the triangle, weights sum to 1, by degree of exactness [Dunavant1985].
-[[nodiscard]] Rule triangleRule3();   ///< degree 2
-[[nodiscard]] Rule triangleRule7();   ///< degree 5
-[[nodiscard]] Rule triangleRule12();  ///< degree 6
-[[nodiscard]] Rule triangleRule16();  ///< degree 8
+[[nodiscard]] const Rule& triangleRule3();   ///< degree 2
+[[nodiscard]] const Rule& triangleRule7();   ///< degree 5
+[[nodiscard]] const Rule& triangleRule16();  ///< degree 8
 
 /// Gauss-Legendre on the segment: coordinates (1 - s, s, 0); degree 2 n - 1.
-[[nodiscard]] Rule segmentRule2();
-[[nodiscard]] Rule segmentRule3();
-[[nodiscard]] Rule segmentRule5();
+[[nodiscard]] const Rule& segmentRule2();
+[[nodiscard]] const Rule& segmentRule3();
+[[nodiscard]] const Rule& segmentRule5();
 
 /// The point itself.
-[[nodiscard]] Rule pointRule();
+[[nodiscard]] const Rule& pointRule();
 
 }  // namespace explica::repulsion

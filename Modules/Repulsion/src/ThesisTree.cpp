@@ -308,7 +308,7 @@ KnotValue ThesisTree::evaluate(const Positions& positions) const {
       });
     }
   });
-  return assemble(*set_, positions, forces, adjacentPairs(*set_, positions, PairAccuracy::Coarse));
+  return assemble(*set_, positions, forces, PairAccuracy::Coarse);
 }
 
 }  // namespace explica::repulsion

@@ -15,13 +15,13 @@ double factorial(int n) {
 }
 
 /// Largest error of the means of u^i v^j, i + j <= degree; exactly 2 i! j! / (i + j + 2)!.
-double triangleError(Rule rule, int degree) {
+double triangleError(const Rule& rule, int degree) {
   double worst = 0;
   for (int i = 0; i <= degree; ++i) {
     for (int j = 0; i + j <= degree; ++j) {
       double mean = 0;
-      for (const RulePoint& p : rule) {
-        mean += p.weight * std::pow(p.lambda[1], i) * std::pow(p.lambda[2], j);
+      for (Eigen::Index n = 0; n < rule.weight.size(); ++n) {
+        mean += rule.weight[n] * std::pow(rule.lambda(n, 1), i) * std::pow(rule.lambda(n, 2), j);
       }
       worst =
           std::max(worst, std::abs(mean - 2 * factorial(i) * factorial(j) / factorial(i + j + 2)));
@@ -30,19 +30,21 @@ double triangleError(Rule rule, int degree) {
   return worst;
 }
 
-double segmentError(Rule rule, int degree) {
+double segmentError(const Rule& rule, int degree) {
   double worst = 0;
   for (int i = 0; i <= degree; ++i) {
     double mean = 0;
-    for (const RulePoint& p : rule) mean += p.weight * std::pow(p.lambda[1], i);
+    for (Eigen::Index n = 0; n < rule.weight.size(); ++n) {
+      mean += rule.weight[n] * std::pow(rule.lambda(n, 1), i);
+    }
     worst = std::max(worst, std::abs(mean - 1.0 / (i + 1)));
   }
   return worst;
 }
 
 TEST(Quadrature, TriangleRulesAreExactToTheirDegreeAndNoFurther) {
-  const std::array<std::pair<Rule, int>, 4> rules = {
-      {{triangleRule3(), 2}, {triangleRule7(), 5}, {triangleRule12(), 6}, {triangleRule16(), 8}}};
+  const std::array<std::pair<Rule, int>, 3> rules = {
+      {{triangleRule3(), 2}, {triangleRule7(), 5}, {triangleRule16(), 8}}};
   for (const auto& [rule, degree] : rules) {
     EXPECT_LT(triangleError(rule, degree), 1e-14) << degree;
     EXPECT_GT(triangleError(rule, degree + 1), 1e-9) << degree;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "../Table.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Report/Chart.h"
 #include "Explica/Report/Drawing.h"
@@ -11,10 +12,6 @@
 
 namespace explica::pipeline {
 namespace {
-
-Eigen::VectorXd asVector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 /// The end of the run, with its reason.
 std::vector<report::ChartMark> endOf(const StepFolder& step, const std::vector<double>& iteration) {
@@ -61,7 +58,7 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
       inRegion.push_back(key != 0);
   }
   bool first = true;
-  const auto inside = [&](const io::VertexMap& map) {
+  const auto inside = [&](const io::VertexMap& map) -> Eigen::VectorXd {
     std::vector<double> values;
     for (Eigen::Index v = 0; v < map.values.size(); ++v) {
       if (inRegion.empty() || (static_cast<std::size_t>(v) < inRegion.size() && inRegion[v]))

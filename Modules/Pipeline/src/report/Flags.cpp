@@ -24,6 +24,7 @@ std::string sideWord(const StepFolder& step) {
 /// Where a heart is open, how its segments are oriented, and how much of its wall is left out.
 std::vector<ReportFlag> heartFlags(const StepFolder& step) {
   std::vector<ReportFlag> flags;
+  if (step.command != "heart") return flags;
   if (const auto open = step.number("open_share_ed");
       open && step.summary.value("plausible", true)) {
     flags.push_back({FlagLevel::Good, "Open at its base:",
@@ -153,11 +154,6 @@ std::vector<ReportFlag> doubtFlags(const StepFolder& step) {
   return flags;
 }
 
-std::vector<ReportFlag> flagsOf(const StepFolder& step) {
-  if (step.command == "heart") return heartFlags(step);
-  return {};
-}
-
 /// Why a step is doubted or to be looked at, where none of its flags says so: of runs within it.
 std::vector<ReportFlag> flagsOfRuns(const StepFolder& step, const std::vector<ReportFlag>& flags) {
   const std::string verdict = step.summary.value("verdict", "");
@@ -206,29 +202,24 @@ void dropRepeated(std::vector<ReportFlag>& flags) {
 void flagSteps(ResultFolder& results) {
   report::ReportContent& content = results.content();
   for (const report::ReportStep& step : content.steps) {
-    if (step.state == report::StepState::Failed)
-      content.flags.push_back({FlagLevel::Bad, step.name + " failed:", step.message});
-    if (step.state == report::StepState::StoppedEarly)
-      content.flags.push_back({FlagLevel::Notice, step.name + " stopped early:", step.message});
-    if (step.state == report::StepState::Interrupted)
-      content.flags.push_back({FlagLevel::Notice, step.name + " was interrupted:", step.message});
-    if (step.state == report::StepState::Missing)
-      content.flags.push_back({FlagLevel::Notice, step.name + " was not run:", step.message});
+    using enum report::StepState;
+    const auto say = [&](FlagLevel level, const char* how) {
+      content.flags.push_back({level, step.name + how, step.message});
+    };
+    if (step.state == Failed) say(FlagLevel::Bad, " failed:");
+    if (step.state == StoppedEarly) say(FlagLevel::Notice, " stopped early:");
+    if (step.state == Interrupted) say(FlagLevel::Notice, " was interrupted:");
+    if (step.state == Missing) say(FlagLevel::Notice, " was not run:");
     for (const std::string& warning : step.warnings)
       content.flags.push_back({FlagLevel::Remark, step.name + ":", warning, placeOf(step.name)});
   }
   for (const StepFolder& step : results.steps()) {
     results.attempt("Flags of " + titleOf(step.name), [&] {
       std::vector<ReportFlag> flags;
-      const auto add = [&flags](std::vector<ReportFlag> more) {
-        std::ranges::move(more, std::back_inserter(flags));
-      };
-      add(doubtFlags(step));
-      add(ownFlags(step));
-      add(judgedFlags(step));
-      add(detachedFlags(step));
-      add(flagsOf(step));
-      add(flagsOfRuns(step, flags));
+      for (const auto find : {doubtFlags, ownFlags, judgedFlags, detachedFlags, heartFlags}) {
+        std::ranges::move(find(step), std::back_inserter(flags));
+      }
+      std::ranges::move(flagsOfRuns(step, flags), std::back_inserter(flags));
       std::ranges::move(flags, std::back_inserter(content.flags));
     });
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a measurement of thickness shows of itself: layers in slices, and the thickness layer by
 // layer.
+#include "Explica/Core/EigenViews.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Report/Chart.h"
 #include "ReportParts.h"
@@ -42,10 +43,6 @@ void chartLayers(ResultFolder& results, const StepFolder& step, const Volume<Lab
   if (values.size() > kMostCharts) return;
   std::vector<double> all;
   for (const auto& [layer, in] : values) all.insert(all.end(), in.begin(), in.end());
-  const auto asVector = [](const std::vector<double>& in) {
-    return Eigen::VectorXd(
-        Eigen::Map<const Eigen::VectorXd>(in.data(), static_cast<Eigen::Index>(in.size())));
-  };
   for (const auto& [layer, in] : values) {
     report::ChartText words{"Layer " + std::to_string(layer) + ": " +
                                 readable(static_cast<double>(in.size())) + " voxels",

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "References.h"
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/IO/VertexDataFile.h"
@@ -18,13 +19,11 @@ namespace fs = std::filesystem;
 constexpr int kDeepest = 3;              // folders below the one named: a study's runs/NAME/surface
 constexpr std::size_t kMostFiles = 400;  // of a study: more do not change a distribution
 
-/// A file of thickness and the hemisphere that it is of.
 struct ThicknessFile {
   fs::path file;
   std::string side;
 };
 
-/// FreeSurfer's own, of a subject.
 std::vector<ThicknessFile> freeSurfersOwn(const fs::path& subject) {
   std::vector<ThicknessFile> found;
   for (const auto& [name, side] : {std::pair{"lh.thickness", "left"}, {"rh.thickness", "right"}}) {
@@ -66,7 +65,7 @@ Eigen::VectorXd valuesOf(const std::vector<ThicknessFile>& files) {
     const io::VertexMap map = io::readVertexMaps(one.file).front();
     std::ranges::copy_if(map.values, std::back_inserter(values), [](double t) { return t > 0; });
   }
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return asVector(values);
 }
 
 std::vector<ThicknessFile> filesUnder(const std::string& folder) {

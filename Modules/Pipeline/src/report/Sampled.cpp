@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "../Table.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/IO/RegionFiles.h"
@@ -84,16 +85,13 @@ void showMaps(ResultFolder& results, const Middle& middle, const fs::path& file,
   const auto maps = fewOf(io::readVertexMaps(file, middle.mesh.vertexCount()));
   std::vector<double> pooled;
   for (const io::VertexMap& map : maps) {
-    std::ranges::copy_if(map.values, std::back_inserter(pooled),
-                         [](double v) { return std::isfinite(v); });
+    pooled.insert(pooled.end(), map.values.begin(), map.values.end());
   }
   report::ReportViews views;
   views.id = kSampledPlace;
   views.title = volume + " on the middle surface";
   views.caption = "Half way between white and pial. Dark grey: not known.";
-  views.scale = report::scaleFor(
-      Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size())),
-      volume, maps.front().unit);
+  views.scale = report::scaleFor(asVector(pooled), volume, maps.front().unit);
   for (const io::VertexMap& map : maps) {
     addViews(middle, report::coloursOf(map.values, *views.scale), report::Filling::Smooth,
              maps.size() == 1 ? 4 : 2, map.name, views);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "CloseUps.h"
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VolumeFile.h"
@@ -88,13 +89,8 @@ Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) 
 report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, const std::string& name,
                                 const std::string& unit) {
   std::vector<double> pooled;
-  for (const Eigen::VectorXd& one : values) {
-    std::ranges::copy_if(one, std::back_inserter(pooled),
-                         [](double v) { return std::isfinite(v); });
-  }
-  const Eigen::VectorXd pool =
-      Eigen::Map<const Eigen::VectorXd>(pooled.data(), static_cast<Eigen::Index>(pooled.size()));
-  return report::scaleFor(pool, name, unit);
+  for (const Eigen::VectorXd& one : values) pooled.insert(pooled.end(), one.begin(), one.end());
+  return report::scaleFor(asVector(pooled), name, unit);
 }
 
 /// A map of `explica surface` for the view in three dimensions.
@@ -351,11 +347,7 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
       words.behindName = std::move(reference->name);
     }
     results.content().charts.push_back(
-        {"",
-         report::histogramSvg(Eigen::Map<const Eigen::VectorXd>(
-                                  ribbon.data(), static_cast<Eigen::Index>(ribbon.size())),
-                              words),
-         kThicknessCharts});
+        {"", report::histogramSvg(asVector(ribbon), words), kThicknessCharts});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 #include "Stage.h"
+#include "Explica/Core/EigenViews.h"
 
 #include <vtkActor.h>
 #include <vtkAnnotatedCubeActor.h>
@@ -272,10 +273,9 @@ void Stage::placeRim() {
 }
 
 void Stage::look(const Vector& direction) {
-  const Point low = positions_.colwise().minCoeff().transpose();
-  const Point high = positions_.colwise().maxCoeff().transpose();
-  const Point middle = 0.5 * (low + high);
-  const Point eye = middle + 2 * (high - low).norm() * direction.normalized();
+  const Eigen::AlignedBox3d box = boundingBox(positions_);
+  const Point middle = box.center();
+  const Point eye = middle + 2 * box.diagonal().norm() * direction.normalized();
   vtkCamera* camera = renderer_->GetActiveCamera();
   camera->SetFocalPoint(middle.x(), middle.y(), middle.z());
   camera->SetPosition(eye.x(), eye.y(), eye.z());
@@ -284,8 +284,8 @@ void Stage::look(const Vector& direction) {
   camera->SetViewUp(0, along ? 1 : 0, along ? 0 : 1);
   double bounds[6];
   for (int axis = 0; axis < 3; ++axis) {
-    bounds[2 * axis] = low[axis];
-    bounds[2 * axis + 1] = high[axis];
+    bounds[2 * axis] = box.min()[axis];
+    bounds[2 * axis + 1] = box.max()[axis];
   }
   renderer_->ResetCamera(bounds);
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/EigenViews.h"
 #include "Explica/Core/TriangleMesh.h"
 #include "Explica/Core/Volume.h"
 #include "Explica/Report/ColourMap.h"
@@ -51,7 +52,6 @@ struct FigureView {
                                     const std::vector<FigureView>& views, int columns,
                                     const SurfacePictureOptions& options = {});
 
-/// Camera of a view.
 [[nodiscard]] Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width,
                               int height);
 
@@ -60,17 +60,7 @@ struct FigureView {
 [[nodiscard]] Picture sliceFigure(const Volume<float>& image, const std::vector<Contour>& contours,
                                   int count, int height);
 
-/// A box of the voxels above `threshold`, RAS mm, with the first and last voxel's centres inside.
-struct WorldBox {
-  Point low = Point::Constant(kInfinity);
-  Point high = Point::Constant(-kInfinity);
-  void add(const TriangleMesh& mesh) {
-    if (mesh.vertexCount() == 0) return;
-    low = low.cwiseMin(mesh.positions.colwise().minCoeff().transpose());
-    high = high.cwiseMax(mesh.positions.colwise().maxCoeff().transpose());
-  }
-  [[nodiscard]] bool empty() const { return !(low.array() <= high.array()).all(); }
-};
-[[nodiscard]] WorldBox boxAbove(const Volume<float>& image, double threshold);
+/// The box of the centres of voxels above `threshold`, RAS mm.
+[[nodiscard]] Eigen::AlignedBox3d boxAbove(const Volume<float>& image, double threshold);
 
 }  // namespace explica::report

@@ -19,18 +19,18 @@ struct MultipoleTreeOptions {
 /// Knot energy by a tree code; time O(n log N) for n moving faces among N.
 ///
 /// E = sum over quadrature points of w_q phi(x_q), phi(x) the integral of 1/|x - y|^2 dS(y). Moving
-/// faces are grouped by sixteen.  Far clusters of sources act on each face by the second moments of
-/// both sides, close faces by three by three points, near ones by product Gauss rules on subdivided
-/// faces, faces with common corners by the regular integrals that remain once the singularity is
-/// integrated exactly (PairIntegral.h).  The tree of the fixed faces is built once, that of the
-/// moving faces at every evaluation.
+/// faces are grouped by sixteen and count by three points each.  On these act far clusters of
+/// sources by their second moments, close faces by three points, near ones by product Gauss rules
+/// on subdivided faces, faces with common corners by the regular integrals that remain once the
+/// singularity is integrated exactly (PairIntegral.h).  The tree of the fixed faces is built once,
+/// that of the moving faces at every evaluation.
 ///
-/// Vectorised in single precision, added up in double: the value carries noise of about 1e-7 of
-/// itself. The gradient is that of the quadrature, but not of the choice of clusters.  Relative L2
-/// error with the default options: of the value below 1e-3 of all pairs; of the gradient below 1e-3
-/// on patches of folded surfaces, up to 1e-2 on fine closed ones, where the forces of neighbours
-/// cancel (README.md).  Result independent of the number of threads; the last digits depend on the
-/// machine's vector instructions.  Keeps its scratch memory between evaluations.
+/// Clusters and points are summed in vectors of single precision: the value carries noise of about
+/// 1e-7 of itself. The gradient is that of the quadrature, but not of the choice of clusters.
+/// Relative L2 error with the default options: of the value below 1e-3 of all pairs; of the
+/// gradient below 1e-3 on patches of folded surfaces, up to 1e-2 on fine closed ones, where the
+/// forces of neighbours cancel (README.md).  Result independent of the number of threads; the last
+/// digits depend on the machine's vector instructions.
 class MultipoleTree : public KnotEnergy {
  public:
   /// @throws InvalidInput  as makeKnotEnergy; an option out of range
