@@ -102,16 +102,13 @@ class GuardedMesh {
   /// returns false if it was refused.  Space is cut into slabs that are worked on by several
   /// threads, every other one at a time; vertices whose faces reach too far follow at the end.  The
   /// outcome does not depend on the number of threads.
-  /// @return how many steps were refused
-  std::int64_t sweep(const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
+  void sweep(const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
   /// As above, for some vertices only.
-  std::int64_t sweep(const std::vector<std::int32_t>& vertices,
-                     const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
+  void sweep(const std::vector<std::int32_t>& vertices,
+             const std::function<bool(std::int32_t v, Scratch& scratch)>& step);
 
   /// Moves vertices all at once, as the function of that name.
-  /// @return how many have stayed where they were
-  std::int64_t moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
-                            const Attempts& to);
+  void moveTogether(const std::vector<std::int32_t>& vertices, int attempts, const Attempts& to);
   [[nodiscard]] std::vector<std::int32_t> allVertices() const;
 
   /// An edge of the mesh, to be worked on.

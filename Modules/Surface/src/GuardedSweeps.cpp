@@ -70,13 +70,13 @@ std::vector<std::int32_t> GuardedMesh::allVertices() const {
   return vertices;
 }
 
-std::int64_t GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
-  return sweep(allVertices(), step);
+void GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
+  sweep(allVertices(), step);
 }
 
-std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
-                                const std::function<bool(std::int32_t, Scratch&)>& step) {
-  if (vertices.empty()) return 0;
+void GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
+                        const std::function<bool(std::int32_t, Scratch&)>& step) {
+  if (vertices.empty()) return;
   bringUpToDate();
   const int axis = slabAxis();
   const int slabs = (cellSize_[axis] + kSlab - 1) / kSlab;
@@ -84,24 +84,16 @@ std::int64_t GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
   for (const std::int32_t v : vertices) {
     members[cellAt(positions_[v][axis], axis) / kSlab].push_back(v);
   }
-  std::vector<std::int64_t> refused(slabs, 0);
   overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
     for (const std::int32_t v : members[slab]) {
       scratch.leftZone = !inZone(v, scratch);
-      if (!scratch.leftZone && step(v, scratch)) continue;
-      if (scratch.leftZone) {
-        late[slab].push_back(v);
-      } else {
-        ++refused[slab];
-      }
+      const bool isDone = !scratch.leftZone && step(v, scratch);
+      if (!isDone && scratch.leftZone) late[slab].push_back(v);
     }
   });
-  std::int64_t sum = 0;
-  for (int slab = 0; slab < slabs; ++slab) {
-    for (const std::int32_t v : late[slab]) sum += !step(v, scratch_);
-    sum += refused[slab];
+  for (const std::vector<std::int32_t>& ofSlab : late) {
+    for (const std::int32_t v : ofSlab) step(v, scratch_);
   }
-  return sum;
 }
 
 void GuardedMesh::sweepEdges(const std::vector<Edge>& edges,
@@ -137,15 +129,13 @@ TriangleMesh GuardedMesh::withAllSlots() const {
   return mesh;
 }
 
-std::int64_t GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
-                                       const Attempts& to) {
+void GuardedMesh::moveTogether(const std::vector<std::int32_t>& vertices, int attempts,
+                               const Attempts& to) {
   TriangleMesh mesh = withAllSlots();
   geometry::SelfIntersectionSearch search;
-  const std::vector<std::uint8_t> stand =
-      surface::moveTogether(mesh, search, vertices, attempts, to);
+  surface::moveTogether(mesh, search, vertices, attempts, to);
   for (const std::int32_t v : vertices) positions_[v] = mesh.positions.row(v);
   stale_ = true;
-  return std::count(stand.begin(), stand.end(), static_cast<std::uint8_t>(attempts));
 }
 
 void GuardedMesh::bringUpToDate() {

@@ -51,7 +51,6 @@ class Remesher {
   void setEdge(double edge) { edge_ = edge; }
   [[nodiscard]] double edge() const { return edge_; }
   [[nodiscard]] GuardedMesh& mesh() { return mesh_; }
-  [[nodiscard]] std::int64_t refused() const { return refused_; }
 
   /// Stores the mesh in the order of space, which changes have spoilt.
   void tidy() {
@@ -90,7 +89,7 @@ class Remesher {
     });
     // Half way is often free where the whole way is not.
     constexpr int kWays = 2;
-    refused_ += mesh_.moveTogether(mesh_.allVertices(), kWays, [&](std::int32_t v, int way) {
+    mesh_.moveTogether(mesh_.allVertices(), kWays, [&](std::int32_t v, int way) {
       return way == 0 ? onLevel(v, centre[v]) : Point(0.5 * (mesh_.at(v) + centre[v]));
     });
   }
@@ -232,7 +231,6 @@ class Remesher {
   double edge_;
   double voxel_;
   std::int64_t stored_;  ///< faces when it was stored last
-  std::int64_t refused_ = 0;
 };
 
 /// What was asked for, to the next even number, but no more than the volume can tell.
@@ -293,7 +291,7 @@ RemeshResult remesh(const TriangleMesh& mesh, const LevelSet& level, const Remes
     remesher.smooth();
   }
   monitor.progress(1.0, "remeshed");
-  return {remesher.mesh().toMesh(), remesher.edge(), remesher.refused()};
+  return {remesher.mesh().toMesh(), remesher.edge()};
 }
 
 }  // namespace explica::surface

@@ -27,8 +27,7 @@ struct RemeshOptions {
 /// What a remeshing did.
 struct RemeshResult {
   TriangleMesh mesh;
-  double edgeLength = 0;          ///< aimed at, mm
-  std::int64_t stepsRefused = 0;  ///< vertex moves that would have made the surface meet itself
+  double edgeLength = 0;  ///< aimed at, mm
 };
 
 /// Isotropic remeshing of a level set's surface [Botsch2004]: long edges are split, short ones
