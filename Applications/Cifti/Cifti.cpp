@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/IO/CiftiFile.h"
+#include "Explica/IO/StatedHemisphere.h"
 #include "Explica/IO/VertexFile.h"
 
 #include "Explica/Application/Command.h"
@@ -71,6 +72,17 @@ io::CiftiPart mapsOf(const CiftiSide& side) {
   return part;
 }
 
+/// A file has one name for both sides of a map.
+void warnOfOtherNames(Context& context, const std::vector<io::CiftiPart>& parts) {
+  for (std::size_t m = 0; parts.size() == 2 && m < parts[0].maps.size(); ++m) {
+    if (m >= parts[1].maps.size()) return;
+    const std::string &left = parts[0].maps[m].name, &right = parts[1].maps[m].name;
+    if (io::withoutSide(left) == io::withoutSide(right)) continue;
+    context.warn("map " + std::to_string(m + 1) + " is '" + left + "' on the left and '" + right +
+                 "' on the right; the file has the left one's name");
+  }
+}
+
 template <class Part>
 std::vector<Part> each(const std::vector<CiftiSide>& sides, Part (*read)(const CiftiSide&)) {
   std::vector<Part> parts;
@@ -96,6 +108,7 @@ Termination run(Context& context, const CiftiSettings& s) {
   }
   const std::vector<io::CiftiPart> parts =
       labels ? std::vector<io::CiftiPart>() : each(sides, mapsOf);
+  if (!s.seconds) warnOfOtherNames(context, parts);
   const io::CiftiFile file = labels      ? io::ciftiLabels(each(sides, ciftiLabelsOf))
                              : s.seconds ? io::ciftiSeries(parts, *s.seconds)
                                          : io::ciftiScalars(parts);

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 namespace explica::app {
 
@@ -123,22 +124,30 @@ void give(const std::string& file, std::vector<Shown>& all) {
   const bool labels = io::namesLabels(file);
   const Eigen::Index count = labels ? io::readVertexLabels(file).keys.size()
                                     : io::readVertexMaps(file).front().values.size();
-  bool given = false;
+  bool fitting = false, given = false;
   for (Shown& shown : all) {
     if (!fits(shown, side, count)) continue;
-    given = true;
+    fitting = true;
     if (labels) {
+      given = given || !shown.labels;
       if (!shown.labels) shown.labels = readLabelsOn(shown.surface, file);
       continue;
     }
     const io::VertexMap map = readMapsOn(shown.surface, file).front();
-    if (isFolding(file, map.name)) {
+    const bool folding = isFolding(file, map.name);
+    given = given || folding || !shown.map;
+    if (folding) {
       shown.folding = map.values;
     } else if (!shown.map) {
       shown.map = map;
     }
   }
   if (given) return;
+  if (fitting) {
+    throw InvalidInput("'" + file + "': the surfaces that it fits have another " +
+                       (labels ? "annotation" : "map") +
+                       " already; draw it in a figure of its own");
+  }
   throw InvalidInput(
       "'" + file + "': " + std::to_string(count) + " vertices" +
       (side ? " of the " + std::string(nameOf(*side)) + " hemisphere" : "") +
@@ -170,8 +179,19 @@ std::vector<Shown> readFiles(const FigureSettings& s) {
 
 /// The map's name without folder and hemisphere: FreeSurfer's "lh.thickness" is thickness.
 std::string titleOf(const io::VertexMap& map) {
-  const std::string name = std::filesystem::path(map.name).filename().string();
-  return name.starts_with("lh.") || name.starts_with("rh.") ? name.substr(3) : name;
+  return io::withoutSide(std::filesystem::path(map.name).filename().string());
+}
+
+/// One colour bar shows one quantity.
+void warnOfOthers(Context& context, const std::vector<Shown>& all) {
+  std::vector<std::string> titles;
+  for (const Shown& shown : all) {
+    if (shown.map) titles.push_back(titleOf(*shown.map));
+  }
+  const auto other = std::ranges::adjacent_find(titles, std::not_equal_to<>());
+  if (other == titles.end()) return;
+  context.warn("maps of different names, '" + other[0] + "' and '" + other[1] +
+               "', share one colour bar, which has the name of the first");
 }
 
 /// One scale for all maps; none without maps.
@@ -276,6 +296,7 @@ std::vector<std::vector<report::Panel>> rowsOf(const FigureSettings& s,
 
 Termination run(Context& context, const FigureSettings& s) {
   std::vector<Shown> all = readFiles(s);
+  warnOfOthers(context, all);
   const auto scale = scaleOf(s, all);
   for (Shown& shown : all) paint(shown, scale);
   auto step = context.step("draw");

@@ -238,6 +238,22 @@ TEST_P(SwappedSides, AreRefusedAndCanBeAccepted) {
 INSTANTIATE_TEST_SUITE_P(Table, SwappedSides, ::testing::ValuesIn(kSwaps),
                          [](const auto& row) { return row.param.name; });
 
+TEST(Meeting, MapsOfBothSidesInOneFileHaveOneName) {
+  TemporaryFolder folder;
+  writeHemispheres(folder);
+  const auto joined = [&](const std::string& name, const char* out) {
+    const Eigen::VectorXd values = io::readVertexMaps(folder / "R/map.shape.gii").front().values;
+    io::writeGiftiShape(folder / "R/map.shape.gii", {{name, "", values}}, "CortexRight");
+    return explica({"cifti", "--left", folder / "L/map.shape.gii", "--right",
+                    folder / "R/map.shape.gii", "--out", folder / out});
+  };
+  EXPECT_EQ(joined("rh.a", "same").err.find("'rh.a' on the right"), std::string::npos);
+  const auto other = joined("b", "other");
+  EXPECT_EQ(other.exitCode, 0) << other;
+  EXPECT_NE(other.err.find("map 1 is 'a' on the left and 'b' on the right"), std::string::npos)
+      << other;
+}
+
 TEST(Meeting, MapsOfAnotherMeshWithTheSameCountAreKnownByTheirRecord) {
   const TemporaryFolder folder;
   for (const char* size : {"20", "24"}) {

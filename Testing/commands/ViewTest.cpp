@@ -248,6 +248,23 @@ TEST_F(Figure, HasBothHemispheresFlatMapsAndOneColourBarInLayers) {
   EXPECT_NE(readText(folder_ / "a/figure.png"), readText(folder_ / "c/figure.png"));
 }
 
+TEST_F(Figure, TellsThatMapsOfOneBarHaveDifferentNames) {
+  io::writeGiftiShape(folder_ / "R.depth.shape.gii",
+                      {{"depth", "mm", io::readVertexMaps(folder_ / "R.shape.gii").front().values}},
+                      "CortexRight");
+  const auto same = draw({"L.surf.gii", "L.shape.gii", "R.surf.gii", "R.shape.gii"}, "a");
+  EXPECT_EQ(same.err.find("different names"), std::string::npos) << same;
+  const auto other = draw({"L.surf.gii", "L.shape.gii", "R.surf.gii", "R.depth.shape.gii"}, "b");
+  EXPECT_EQ(other.exitCode, 0) << other;
+  EXPECT_NE(other.err.find("different names, 'height' and 'depth'"), std::string::npos) << other;
+}
+
+TEST_F(Figure, RefusesAMapThatItWouldNotShow) {
+  const auto made = draw({"L.surf.gii", "L.shape.gii", "L.shape.gii"}, "a");
+  EXPECT_EQ(made.exitCode, 2) << made;
+  EXPECT_NE(made.err.find("have another map already"), std::string::npos) << made;
+}
+
 TEST_F(Figure, RefusesMapsOfTheOtherSideAndWhatIsNoSurface) {
   const auto swapped = draw({"L.surf.gii", "R.shape.gii"}, "a");
   EXPECT_EQ(swapped.exitCode, 2) << swapped;

@@ -51,4 +51,14 @@ std::string statedStructure(const std::filesystem::path& file) {
   return *stated == Hemisphere::Left ? "CortexLeft" : "CortexRight";
 }
 
+std::string withoutSide(std::string name) {
+  for (const std::string_view ending : {"_L", "_R", "_left", "_right"}) {
+    if (name.ends_with(ending)) name.resize(name.size() - ending.size());
+  }
+  for (const std::string_view beginning : {"ctx-lh-", "ctx-rh-", "lh_", "rh_", "lh.", "rh."}) {
+    if (name.starts_with(beginning)) name.erase(0, beginning.size());
+  }
+  return name;
+}
+
 }  // namespace explica::io

@@ -6,6 +6,7 @@
 #include "Explica/Core/FileText.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Core/Types.h"
+#include "Explica/IO/StatedHemisphere.h"
 
 #include <map>
 #include <vector>
@@ -21,16 +22,6 @@ struct Region {
   double area = kNaN;
 };
 
-std::string withoutSide(std::string name) {
-  for (const std::string_view ending : {"_L", "_R"}) {
-    if (name.ends_with(ending)) name.resize(name.size() - ending.size());
-  }
-  for (const std::string_view beginning : {"ctx-lh-", "ctx-rh-", "lh_", "rh_"}) {
-    if (name.starts_with(beginning)) name.erase(0, beginning.size());
-  }
-  return name;
-}
-
 std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
   const std::string table = fileText(path);
   const std::vector<std::string> headings = cellsOf(table.substr(0, table.find('\n')));
@@ -41,7 +32,7 @@ std::map<std::string, Region> readRegions(const std::filesystem::path& path) {
   }
   std::map<std::string, Region> regions;
   for (const TableRow& row : tableRows(table)) {
-    regions[withoutSide(row.at("name"))] = {numberIn(row, kThickness), numberIn(row, kArea)};
+    regions[io::withoutSide(row.at("name"))] = {numberIn(row, kThickness), numberIn(row, kArea)};
   }
   return regions;
 }

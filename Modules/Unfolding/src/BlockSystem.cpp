@@ -71,7 +71,8 @@ void BlockSystem::addDiagonal(double value) {
 
 bool BlockSystem::solve(const Positions& rightSide, Positions& solution) {
   order();
-  const auto& [place, pattern, edge] = elimination_;
+  const std::vector<std::int32_t>&place = elimination_.place, &edge = elimination_.edge;
+  const geometry::BlockPattern& pattern = elimination_.pattern;
   parallelFor(static_cast<std::size_t>(count_), kGrain, [&](std::size_t i) {
     const std::int32_t column = place[i];
     blocks_[pattern.begin[column]] = diagonal_[i];

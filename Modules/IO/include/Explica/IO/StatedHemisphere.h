@@ -18,4 +18,8 @@ namespace explica::io {
 /// The same in GIFTI's words, "CortexLeft" or "CortexRight"; empty if nothing is stated.
 [[nodiscard]] std::string statedStructure(const std::filesystem::path& file);
 
+/// The name of a map or a region without what tells its hemisphere: lh.thickness is thickness,
+/// ctx-lh-insula insula, Insula_L Insula.
+[[nodiscard]] std::string withoutSide(std::string name);
+
 }  // namespace explica::io
