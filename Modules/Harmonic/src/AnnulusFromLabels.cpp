@@ -161,13 +161,14 @@ BoxOfSites sitesOf(const Volume<Label>& labels, const LabelRoles& roles, const M
 }
 
 Annulus annulusOf(BoxOfSites found, const AnnulusOptions& options, const Monitor& monitor) {
-  const auto& [grid, box, sites] = found;
+  const Grid& grid = found.grid;
+  const Box& box = found.box;
   std::optional<LabelBoundary> innerBoundary, outerBoundary;
   if (options.boundary != BoundaryModel::Staircase) {
     const int axes = options.perSlice ? 2 : grid.dimension();
     parallelFor(2, 1, [&](std::size_t outer) {
       (outer == 1 ? outerBoundary : innerBoundary)
-          .emplace(boundaryOf(sites, box, outer == 1, axes));
+          .emplace(boundaryOf(found.sites, box, outer == 1, axes));
     });
   }
   const std::array<int, 3> strides = {1, box.size[0], box.size[0] * box.size[1]};

@@ -39,7 +39,9 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
     throw InvalidInput("the sites and the two level sets lie on different grids");
   }
   constexpr int kMargin = 2;
-  auto [grid, box, codes] = boxOf(sites, kMargin);
+  BoxOfSites found = boxOf(sites, kMargin);
+  const Grid& grid = found.grid;
+  const Box& box = found.box;
   std::vector<float> inner(box.count(), 0), outer(box.count(), 0);
   forVoxels(box, [&](std::size_t p, int i, int j, int k) {
     // Beyond the volume its nearest voxel, so that the crossing's curvature sees no jump.
@@ -63,17 +65,17 @@ Annulus annulusFromSites(const Volume<Site>& sites, const Volume<float>& innerLe
     return crossing(back ? outward * level[p - step] : linearBack, here, there,
                     on ? outward * level[p + 2 * step] : linearOn);
   };
-  return assemble(grid, box, std::move(codes), placeOnLink, options, monitor);
+  return assemble(grid, box, std::move(found.sites), placeOnLink, options, monitor);
 }
 
 Annulus annulusFromSites(const Volume<Site>& sites, const PlaceOnLink& placeOnLink,
                          const AnnulusOptions& options, const Monitor& monitor) {
-  auto [grid, box, codes] = boxOf(sites, 1);
-  const auto inGrid = [&, first = box.first](std::int32_t, const std::array<int, 3>& s, int d,
-                                             bool inner) {
+  BoxOfSites found = boxOf(sites, 1);
+  const auto inGrid = [&placeOnLink, first = found.box.first](
+                          std::int32_t, const std::array<int, 3>& s, int d, bool inner) {
     return placeOnLink({s[0] + first[0], s[1] + first[1], s[2] + first[2]}, d, inner);
   };
-  return assemble(grid, box, std::move(codes), inGrid, options, monitor);
+  return assemble(found.grid, found.box, std::move(found.sites), inGrid, options, monitor);
 }
 
 Annulus annulusFromLevels(const Volume<float>& inner, const Volume<float>& outer,
