@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 
 namespace {
@@ -57,6 +58,18 @@ TEST(StatedHemisphere, NamesSayItWhereTheContentDoesNot) {
   io::writeGiftiShape(folder / "rh.a.shape.gii", {{"a", "", Eigen::Vector2d(1, 2)}}, "Other");
   EXPECT_EQ(io::statedHemisphere(folder / "rh.a.shape.gii"), Hemisphere::Right);
   EXPECT_EQ(io::statedHemisphere(folder / "lh.absent"), Hemisphere::Left);
+}
+
+TEST(WithoutSide, NamesOfBothSidesAreTheSame) {
+  using Names = std::array<std::string, 3>;
+  for (const auto& [left, right, both] :
+       {Names{"lh.thickness", "rh.thickness", "thickness"},
+        Names{"ctx-lh-insula", "ctx-rh-insula", "insula"}, Names{"Insula_L", "Insula_R", "Insula"},
+        Names{"thick_left", "thick_right", "thick"}}) {
+    EXPECT_EQ(io::withoutSide(left), both);
+    EXPECT_EQ(io::withoutSide(right), both);
+  }
+  EXPECT_EQ(io::withoutSide("curv"), "curv");
 }
 
 }  // namespace
