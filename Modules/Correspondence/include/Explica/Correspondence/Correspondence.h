@@ -42,7 +42,8 @@ void describe(CorrespondenceOptions& options, Visitor&& visit) {
       Field{"lambda", "mm",
             "hybrid, appendix-a: boundary points of neighbours nearer than this are "
             "interpolated, others followed; 0 follows all (default: 1.4 times the longest diagonal "
-            "of a grid face, 0 in tissue a few voxels thick)"},
+            "of a grid face, 0 in tissue a few voxels thick)",
+            0},
       options.lambda);
 }
 
