@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace explica::segmentation {
@@ -127,13 +128,21 @@ float countFromAir(Volume<float>& image) {
       judge("hounsfield", airInHounsfieldUnits(image), {})) {
     return 0;
   }
-  // Around a stripped brain air is 0, also where an interpolation has made it a little less.
-  const float little = 1e-3f * std::max(0.0f, quantileOf(image.data, 0.99));
-  const auto dark = [&](float value) { return value < -little; };
-  const auto none = [&](float value) { return std::abs(value) <= little; };
-  if (std::ranges::count_if(image.data, none) > std::ranges::count_if(image.data, dark)) {
-    for (float& value : image.data) value = value > little ? value : 0;
-    return 0;
+  // Around a stripped brain air is 0.  Below it lie an interpolation's undershoots, which are
+  // shallow, or half of a brain that was scaled to mean 0 within its mask.
+  constexpr float kUndershoot = 0.1f;  // of an edge, in the middle: Gibbs' is 0.09 at most
+  const float bright = std::max(0.0f, quantileOf(image.data, 0.99)), little = 1e-3f * bright;
+  std::vector<float> dark;
+  std::ranges::copy_if(image.data, std::back_inserter(dark), [&](float v) { return v < -little; });
+  const auto none =
+      std::ranges::count_if(image.data, [&](float v) { return std::abs(v) <= little; });
+  if (none > static_cast<std::ptrdiff_t>(dark.size())) {
+    const bool isScaled = !dark.empty() && quantileOf(dark, 0.5) < -kUndershoot * bright;
+    const float lift = isScaled ? -*std::ranges::min_element(dark) : 0;
+    const float air = isScaled ? 0 : little;
+    for (float& value : image.data)
+      value = std::abs(value) <= air ? 0 : std::max(0.0f, value + lift);
+    return lift;
   }
   const float lift = -std::min(0.0f, quantileOf(image.data, kDarkest));
   for (float& value : image.data) value = std::max(0.0f, value + lift);

@@ -106,5 +106,15 @@ TEST(CountFromAir, IsZeroAroundAStrippedBrainThatWasInterpolated) {
   for (const std::size_t outside : {220, 300, 301, 900}) EXPECT_EQ(image[outside], 0) << outside;
 }
 
+TEST(CountFromAir, KeepsTheDarkHalfOfABrainThatWasScaledWithinItsMask) {
+  Grid grid;
+  grid.size = {10, 10, 10};
+  Volume<float> image(grid, 0.0f);
+  for (std::size_t v = 0; v < 300; ++v) image[v] = -2.4f + 0.0123f * static_cast<float>(v);
+  EXPECT_FLOAT_EQ(countFromAir(image), 2.4f);
+  for (std::size_t v = 1; v < 300; ++v) ASSERT_NEAR(image[v], 0.0123f * v, 1e-5) << v;
+  for (std::size_t v = 300; v < 1000; ++v) ASSERT_EQ(image[v], 0) << v;
+}
+
 }  // namespace
 }  // namespace explica::segmentation

@@ -23,7 +23,8 @@ struct HeadContrast {
 
 /// Brightness counts from that of air: where an image's darkest hundredth is below 0, as in one
 /// scaled to mean 0 and deviation 1, it becomes 0, and so does what is darker.  Where more is about
-/// 0 than below, as around a stripped brain, air is 0 already.  A CT stays.
+/// 0 than below, as around a stripped brain, air is 0 already; a brain that was scaled within its
+/// mask is lifted above it.  A CT stays.
 /// @return what was added
 float countFromAir(Volume<float>& image);
 
