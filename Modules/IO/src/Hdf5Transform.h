@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Bytes.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,9 +16,23 @@ struct TransformEntry {
   std::vector<double> parameters, fixed;
 };
 
-/// Writes transforms into an HDF5 file of the layout of itk::HDF5TransformIO: a group a transform
-/// under /TransformGroup, parameters packed by deflate.  Equal transforms give equal bytes: the
-/// file holds neither times nor the host.
+constexpr std::size_t kMostTransforms = 1000;  ///< in a file; a pipeline's have a dozen
+
+[[nodiscard]] bool looksLikeHdf5(ByteView bytes);
+
+/// Transforms of an HDF5 file of the layout of itk::HDF5TransformIO, in their order.
+///
+/// HDF5's library (1.10) checks few of the addresses in a file and crashes on some hundredth of
+/// damaged ones, so that it reads in a process of its own.
+///
+/// @param bytes  the whole file
+/// @throws IOError           damaged, or not of that layout
+/// @throws EnvironmentError  no process could be made
+[[nodiscard]] std::vector<TransformEntry> readHdf5Transform(const std::filesystem::path& path,
+                                                            ByteView bytes);
+
+/// Writes transforms into such a file: a group a transform under /TransformGroup, parameters packed
+/// by deflate.  Equal transforms give equal bytes: the file holds neither times nor the host.
 ///
 /// @throws EnvironmentError  the file cannot be written
 void writeHdf5Transform(const std::filesystem::path& path,

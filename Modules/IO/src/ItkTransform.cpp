@@ -4,7 +4,6 @@
 #include "ItkTransform.h"
 
 #include "ByteSource.h"
-#include "Hdf5File.h"
 #include "Hdf5Transform.h"
 #include "MeshBuilder.h"
 
@@ -26,8 +25,6 @@ using Composite = itk::CompositeTransform<double, 3>;
 using Linear = itk::MatrixOffsetTransformBase<double, 3, 3>;
 using Warp = itk::DisplacementFieldTransform<double, 3>;
 using Transform = itk::Transform<double, 3, 3>;
-
-constexpr std::size_t kMostTransforms = 1000;  // in a row; a pipeline's have a dozen
 
 void add(const Path& path, std::vector<TransformEntry>& entries, TransformEntry entry) {
   if (entries.size() == kMostTransforms) {
@@ -92,41 +89,6 @@ std::vector<TransformEntry> entriesOfMatlab(const Path& path, ByteView bytes) {
     }
   }
   return entries;
-}
-
-std::vector<double> doublesOf(const Path& path, const Hdf5File& file, const std::string& place,
-                              const std::string& misspelt) {
-  std::optional<Hdf5Array> array = file.find(place);
-  if (!array) array = file.find(misspelt);
-  if (!array) failToRead(path, "lacks '" + place + "'");
-  const Bytes bytes = file.valuesOf(*array);
-  std::vector<double> values;
-  withType(array->type, [&]<class In>(const In*) {
-    values.reserve(bytes.size() / sizeof(In));
-    for (std::size_t at = 0; at + sizeof(In) <= bytes.size(); at += sizeof(In)) {
-      values.push_back(static_cast<double>(load<In>(bytes.data() + at, false)));
-    }
-  });
-  return values;
-}
-
-/// Groups /TransformGroup/0, 1, ...; older versions of ITK misspelt two names.
-std::vector<TransformEntry> entriesOfHdf5(const Path& path, ByteView bytes) {
-  const Hdf5File file(path, bytes);
-  std::vector<TransformEntry> entries;
-  while (true) {
-    const std::string group = "/TransformGroup/" + std::to_string(entries.size()) + "/";
-    const std::optional<std::string> type = file.textAt(group + "TransformType");
-    if (!type) return entries;
-    TransformEntry entry{*type, {}, {}};
-    if (!type->starts_with("CompositeTransform")) {
-      entry.parameters =
-          doublesOf(path, file, group + "TransformParameters", group + "TranformParameters");
-      entry.fixed = doublesOf(path, file, group + "TransformFixedParameters",
-                              group + "TranformFixedParameters");
-    }
-    add(path, entries, std::move(entry));
-  }
 }
 
 /// Refuses numbers that ITK would take memory for, or divide by, before it asks.
@@ -195,7 +157,7 @@ Transform::Pointer transformOf(const Path& path, TransformEntry entry) {
 std::vector<TransformEntry> entriesOf(const Path& path) {
   const Bytes bytes = ByteSource(path).rest();
   const std::string_view text = textOf(bytes);
-  if (looksLikeHdf5(bytes)) return entriesOfHdf5(path, bytes);
+  if (looksLikeHdf5(bytes)) return readHdf5Transform(path, bytes);
   if (text.starts_with("#Insight")) return entriesOfText(path, bytes);
   return entriesOfMatlab(path, bytes);
 }
