@@ -10,8 +10,8 @@
 namespace explica::io {
 
 /// A forked process for the work of a library that a damaged file may crash: it ends alone, and its
-/// results come through a pipe.  It starts no threads, prints nothing, and dies with the last reader
-/// of its pipe.
+/// results come through a pipe.  It starts no threads, prints nothing, and dies with the last
+/// reader of its pipe.
 class ConfinedProcess {
  public:
   using Send = std::function<void(const void* from, std::size_t count)>;

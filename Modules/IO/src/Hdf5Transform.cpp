@@ -78,9 +78,9 @@ void writeNumbers(hid_t file, const std::string& name, const std::vector<double>
     checked(H5Pset_chunk(properties, 1, &count));
     checked(H5Pset_deflate(properties, kDeflateLevel));
   }
-  const Handle data(H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, properties,
-                               H5P_DEFAULT),
-                    H5Dclose);
+  const Handle data(
+      H5Dcreate2(file, name.c_str(), H5T_IEEE_F64LE, space, H5P_DEFAULT, properties, H5P_DEFAULT),
+      H5Dclose);
   if (count > 0) {
     checked(H5Dwrite(data, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()));
   }
@@ -165,8 +165,9 @@ std::vector<TransformEntry> readHdf5Transform(const std::filesystem::path& path,
   });
   const auto receive = [&](void* to, std::size_t count) {
     if (reader.receive(to, count)) return;
-    failToRead(path,
-               "is damaged, or is HDF5 of another kind than ITK's transforms: copy or make it again");
+    failToRead(
+        path,
+        "is damaged, or is HDF5 of another kind than ITK's transforms: copy or make it again");
   };
   const auto receiveAll = [&](auto& values, std::size_t mostValues) {
     std::size_t count = 0;

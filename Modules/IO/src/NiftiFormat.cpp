@@ -24,14 +24,42 @@ struct Header {
   bool pair = false;  ///< header and image in two files
   std::array<std::int64_t, 8> dim{};
   std::array<double, 8> pixdim{};
-  int datatype = 0;
-  std::int64_t offset = 0;
+  int datatype = 0, bits = 0;
+  double offset = 0;  ///< of the values in the file
   double slope = 0, intercept = 0;
-  int units = 0;
+  int units = 0, intent = 0;
   int qformCode = 0, sformCode = 0;
   std::array<double, 6> quaternion{};  ///< b, c, d, offsets x, y, z
   std::array<double, 12> srow{};
 };
+
+/// Visits each field with its byte and type in NIfTI-1, and those in NIfTI-2.
+template <class Visit>
+void forFields(Header& header, const Visit& visit) {
+  constexpr std::int16_t kShort = 0;
+  constexpr std::int32_t kInt = 0;
+  constexpr std::int64_t kLong = 0;
+  constexpr float kFloat = 0;
+  constexpr double kDouble = 0;
+  const auto numbers = [&](auto& row, std::size_t one, std::size_t two) {
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      visit(row[n], one + 4 * n, kFloat, two + 8 * n, kDouble);
+    }
+  };
+  for (std::size_t n = 0; n < 8; ++n) visit(header.dim[n], 40 + 2 * n, kShort, 16 + 8 * n, kLong);
+  visit(header.intent, 68, kShort, 504, kInt);
+  visit(header.datatype, 70, kShort, 12, kShort);
+  visit(header.bits, 72, kShort, 14, kShort);
+  numbers(header.pixdim, 76, 104);
+  visit(header.offset, 108, kFloat, 168, kLong);
+  visit(header.slope, 112, kFloat, 176, kDouble);
+  visit(header.intercept, 116, kFloat, 184, kDouble);
+  visit(header.units, 123, std::uint8_t{}, 500, kInt);
+  visit(header.qformCode, 252, kShort, 344, kInt);
+  visit(header.sformCode, 254, kShort, 348, kInt);
+  numbers(header.quaternion, 256, 352);
+  numbers(header.srow, 280, 400);
+}
 
 struct Detected {
   int version;
@@ -48,44 +76,25 @@ std::optional<Detected> detect(ByteView bytes) {
   return {};
 }
 
-/// NIfTI-1's offset of the values, a float; -1 for one that is no place in a file.
-std::int64_t wholeOffset(float offset) {
-  constexpr float kFarthest = 1e15F;
-  return offset >= 0 && offset <= kFarthest ? static_cast<std::int64_t>(offset) : -1;
-}
-
 Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detected& detected) {
   Header header;
   header.version = detected.version;
   header.bigEndian = detected.bigEndian;
-  const auto at = [&]<class T>(std::size_t offset, T) {
-    return load<T>(bytes.data() + offset, header.bigEndian);
-  };
   const bool one = header.version == 1;
-  const char* magic = reinterpret_cast<const char*>(bytes.data()) + (one ? 344 : 4);
-  header.pair = std::memcmp(magic, one ? "ni1" : "ni2", 3) == 0;
-  if (!header.pair && std::memcmp(magic, one ? "n+1" : "n+2", 3) != 0) {
+  const std::string_view magic = textOf(bytes).substr(one ? 344 : 4, 3);
+  header.pair = magic == (one ? "ni1" : "ni2");
+  if (!header.pair && magic != (one ? "n+1" : "n+2")) {
     failToRead(path,
                "is an Analyze header or a damaged NIfTI header (no NIfTI signature); Analyze files "
                "do not say which side is left: convert to NIfTI");
   }
-  for (std::size_t i = 0; i < 8; ++i) {
-    header.dim[i] = one ? at(40 + 2 * i, std::int16_t{}) : at(16 + 8 * i, std::int64_t{});
-    header.pixdim[i] = one ? at(76 + 4 * i, float{}) : at(104 + 8 * i, double{});
-  }
-  header.datatype = at(one ? 70 : 12, std::int16_t{});
-  header.offset = one ? wholeOffset(at(108, float{})) : at(168, std::int64_t{});
-  header.slope = one ? at(112, float{}) : at(176, double{});
-  header.intercept = one ? at(116, float{}) : at(184, double{});
-  header.units = one ? bytes[123] : at(500, std::int32_t{});
-  header.qformCode = one ? at(252, std::int16_t{}) : at(344, std::int32_t{});
-  header.sformCode = one ? at(254, std::int16_t{}) : at(348, std::int32_t{});
-  for (std::size_t i = 0; i < 6; ++i) {
-    header.quaternion[i] = one ? at(256 + 4 * i, float{}) : at(352 + 8 * i, double{});
-  }
-  for (std::size_t i = 0; i < 12; ++i) {
-    header.srow[i] = one ? at(280 + 4 * i, float{}) : at(400 + 8 * i, double{});
-  }
+  forFields(header, [&]<class Value, class One, class Two>(Value& value, std::size_t at1, One,
+                                                           std::size_t at2, Two) {
+    value = one ? static_cast<Value>(load<One>(bytes.data() + at1, header.bigEndian))
+                : static_cast<Value>(load<Two>(bytes.data() + at2, header.bigEndian));
+  });
+  constexpr double kFarthest = 1e15;  // beyond it there is no place in a file
+  if (!(header.offset >= 0 && header.offset <= kFarthest)) header.offset = -1;
   return header;
 }
 
@@ -373,16 +382,17 @@ StoredVolume readNifti(ByteSource& source, const std::filesystem::path&,
   };
   if (header.pair) {
     ByteSource image(imageOfPair(path));
-    readValues(image, static_cast<std::uint64_t>(std::max<std::int64_t>(header.offset, 0)));
+    readValues(image, static_cast<std::uint64_t>(std::max(header.offset, 0.0)));
   } else {
     const auto read = static_cast<std::int64_t>(first.size());
     const std::int64_t least = read + 4;  // four bytes say whether extensions follow
-    if (header.offset != 0 && header.offset < least) {
+    const auto offset = static_cast<std::int64_t>(header.offset);
+    if (offset != 0 && offset < least) {
       failToRead(path, "its header places the data inside the header (vox_offset " +
-                           std::to_string(header.offset) + ")");
+                           std::to_string(offset) + ")");
     }
     // Some writers leave the offset at 0 and mean the usual place.
-    const std::int64_t start = header.offset == 0 ? least : header.offset;
+    const std::int64_t start = offset == 0 ? least : offset;
     if (extent == Extent::Positioned) {
       source.skip(static_cast<std::uint64_t>(start - read));
       return volume;
@@ -398,36 +408,19 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   const bool one = *std::ranges::max_element(grid.size) <= std::numeric_limits<std::int16_t>::max();
   constexpr std::size_t kExtensionFlag = 4;  // four zeros: no extension follows
   Bytes bytes((one ? kHeader1 : kHeader2) + kExtensionFlag);
-  const auto put = [&](std::size_t at, auto value) { store(bytes.data() + at, value, false); };
-  const auto real = [&](std::size_t at1, std::size_t at2, double value) {
-    if (one) {
-      put(at1, static_cast<float>(value));
-    } else {
-      put(at2, value);
-    }
-  };
-  put(0, static_cast<std::int32_t>(one ? kHeader1 : kHeader2));
-  std::memcpy(bytes.data() + (one ? 344 : 4), one ? "n+1\0" : "n+2\0\r\n\032\n", one ? 4 : 8);
-
+  Header header;
+  header.offset = static_cast<double>(bytes.size());
   // Vectors stand along the fifth dimension, frames along the fourth.
   const bool vectors = volume.vectors && volume.valuesPerVoxel > 1;
   const int dimensions = vectors ? 5 : volume.valuesPerVoxel > 1 ? 4 : 3;
   const int frames = vectors ? 1 : volume.valuesPerVoxel;
   const int components = vectors ? volume.valuesPerVoxel : 1;
-  const std::array<std::int64_t, 8> dim = {
-      dimensions, grid.size[0], grid.size[1], grid.size[2], frames, components, 1, 1};
-  for (std::size_t i = 0; i < 8; ++i) {
-    if (one) {
-      put(40 + 2 * i, static_cast<std::int16_t>(dim[i]));
-    } else {
-      put(16 + 8 * i, dim[i]);
-    }
-  }
+  header.dim = {dimensions, grid.size[0], grid.size[1], grid.size[2], frames, components, 1, 1};
   for (const NiftiType& row : kNiftiTypes) {
-    if (row.type != volume.type) continue;
-    put(one ? 70 : 12, static_cast<std::int16_t>(row.code));
-    put(one ? 72 : 14, static_cast<std::int16_t>(8 * widthOf(row.type)));
+    if (row.type == volume.type) header.datatype = row.code;
   }
+  header.bits = static_cast<int>(8 * widthOf(volume.type));
+  header.slope = 1;
   // qform: a rotation, and a sign for grids whose axes are left-handed.
   Eigen::Matrix3d axes = grid.direction;
   const double handedness = axes.determinant() < 0 ? -1 : 1;
@@ -435,46 +428,38 @@ Bytes niftiHeader(const VolumeToWrite& volume) {
   Eigen::Quaterniond rotation(axes);
   rotation.normalize();
   if (rotation.w() < 0) rotation.coeffs() *= -1;
-  const std::array<double, 8> pixdim = {
-      handedness, grid.spacing[0], grid.spacing[1], grid.spacing[2], 1, 1, 1, 1};
-  for (std::size_t i = 0; i < 8; ++i) real(76 + 4 * i, 104 + 8 * i, pixdim[i]);
-  real(112, 176, 1);  // slope
+  header.pixdim = {handedness, grid.spacing[0], grid.spacing[1], grid.spacing[2], 1, 1, 1, 1};
   const Vector bcd = one ? storedQuaternion(rotation) : Vector(rotation.vec());
-  const std::array<double, 6> quaternion = {bcd[0],         bcd[1],         bcd[2],
-                                            grid.origin[0], grid.origin[1], grid.origin[2]};
-  for (std::size_t i = 0; i < 6; ++i) real(256 + 4 * i, 352 + 8 * i, quaternion[i]);
+  header.quaternion = {bcd[0], bcd[1], bcd[2], grid.origin[0], grid.origin[1], grid.origin[2]};
   const Eigen::Matrix4d affine = grid.affine();
   Eigen::Matrix4d qform = affine;
   qform.topLeftCorner<3, 3>() = rotationOf(bcd).toRotationMatrix() * grid.spacing.asDiagonal();
   qform.col(2) *= handedness;
-  const bool qformHolds = disagreement(qform, affine, grid.size) < 0.5 * kAgreement;
-  for (int i = 0; i < 12; ++i) real(280 + 4 * i, 400 + 8 * i, affine(i / 4, i % 4));
+  for (int i = 0; i < 12; ++i) header.srow[i] = affine(i / 4, i % 4);
 
-  constexpr int kMillimetres = 2;  // NIfTI's code of the unit
-  constexpr int kScanner = 1;      // NIfTI's code of the frame
-  // NIfTI's codes of what the values are.
-  constexpr int kLabelIntent = 1002, kVectorIntent = 1007;
+  // NIfTI's codes of millimetres, of the scanner's frame, and of what the values are.
+  constexpr int kMillimetres = 2, kScanner = 1, kLabelIntent = 1002, kVectorIntent = 1007;
+  header.units = kMillimetres;
+  header.sformCode = kScanner;
+  if (disagreement(qform, affine, grid.size) < 0.5 * kAgreement) header.qformCode = kScanner;
   const bool labels = volume.type != StoredType::Float32 && volume.type != StoredType::Float64;
-  const int intent = vectors ? kVectorIntent : labels ? kLabelIntent : 0;
+  header.intent = vectors ? kVectorIntent : labels ? kLabelIntent : 0;
+  forFields(header, [&]<class Value, class One, class Two>(Value& value, std::size_t at1, One,
+                                                           std::size_t at2, Two) {
+    if (one) {
+      store(bytes.data() + at1, static_cast<One>(value), false);
+    } else {
+      store(bytes.data() + at2, static_cast<Two>(value), false);
+    }
+  });
+  store(bytes.data(), static_cast<std::int32_t>(one ? kHeader1 : kHeader2), false);
+  const auto putText = [&](std::size_t at, std::string_view text) {
+    std::memcpy(bytes.data() + at, text.data(), text.size());
+  };
+  putText(one ? 344 : 4, one ? std::string_view("n+1", 4) : std::string_view("n+2\0\r\n\032\n", 8));
+  putText(one ? 148 : 240, "Explica");
   constexpr std::size_t kNameLength = 15;  // bytes that NIfTI has for the name, and a zero
-  std::memcpy(bytes.data() + (one ? 328 : 508), volume.name.data(),
-              std::min(volume.name.size(), kNameLength));
-  static constexpr char kDescription[] = "Explica";
-  if (one) {
-    bytes[123] = kMillimetres;
-    put(68, static_cast<std::int16_t>(intent));
-    put(108, static_cast<float>(bytes.size()));
-    put(252, static_cast<std::int16_t>(qformHolds ? kScanner : 0));
-    put(254, static_cast<std::int16_t>(kScanner));
-    std::memcpy(bytes.data() + 148, kDescription, sizeof(kDescription));
-  } else {
-    put(500, static_cast<std::int32_t>(kMillimetres));
-    put(504, static_cast<std::int32_t>(intent));
-    put(168, static_cast<std::int64_t>(bytes.size()));
-    put(344, static_cast<std::int32_t>(kScanner));
-    put(348, static_cast<std::int32_t>(kScanner));
-    std::memcpy(bytes.data() + 240, kDescription, sizeof(kDescription));
-  }
+  putText(one ? 328 : 508, std::string_view(volume.name).substr(0, kNameLength));
   return bytes;
 }
 

@@ -48,11 +48,11 @@ void knot(benchmark::State& state, PolygonKnot method) {
   }
   const std::vector<bool> moving(n, true);
   const auto exact =
-      makePolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving)->evaluate(ring.positions);
-  const auto energy = makePolygonKnotEnergy(method, ring, moving);
+      PolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving).evaluate(ring.positions);
+  const auto energy = PolygonKnotEnergy(method, ring, moving);
   PolygonKnotValue value;
   for ([[maybe_unused]] auto _ : state) {
-    value = energy->evaluate(ring.positions);
+    value = energy.evaluate(ring.positions);
     benchmark::DoNotOptimize(value.value);
   }
   state.counters["gradient_error"] =

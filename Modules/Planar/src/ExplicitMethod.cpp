@@ -22,7 +22,7 @@ class ExplicitMethod final : public UnfoldingMethod {
     const Curve& curve = problem_.curve();
     Positions2 flow = options.visibilityGain *
                       polygonVisibility(curve, problem_.region(), problem_.view()).gradient;
-    flow -= options.repulsionGain * problem_.knot(curve).second;
+    flow -= options.repulsionGain * problem_.knot(curve).gradient;
     for (int v = 0; v < curve.vertexCount(); ++v) {
       if (!problem_.moving()[v]) flow.row(v).setZero();
     }

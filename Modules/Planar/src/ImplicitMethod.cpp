@@ -124,10 +124,10 @@ class ImplicitMethod final : public UnfoldingMethod {
     const double gain = problem_.initialLength() / unit;
     const PolygonVisibility visibility =
         polygonVisibility(curve, problem_.region(), problem_.view());
-    const auto [knot, knotGradient] = problem_.knot(curve);
+    const PolygonKnotValue knot = problem_.knot(curve);
     const double knotWeight = knotWeight_ / unit;
-    double energy = -gain * visibility.average + knotWeight * knot;
-    Positions2 all = -gain * visibility.gradient + knotWeight * knotGradient;
+    double energy = -gain * visibility.average + knotWeight * knot.value;
+    Positions2 all = -gain * visibility.gradient + knotWeight * knot.gradient;
     for (const VertexEdgePair& pair : pairs) {
       const VertexEdgeDistance near = vertexEdgeDistance(curve, pair.vertex, pair.edge);
       if (near.distance >= pair.range) continue;

@@ -117,114 +117,45 @@ struct EdgeSum {
   std::size_t pairs = 0;
 };
 
-class Summation {
- public:
-  Summation(const Curve& curve, const std::vector<bool>& moving)
-      : curve_(curve), moves_(curve.edgeCount()) {
-    for (int e = 0; e < curve.edgeCount(); ++e) moves_[e] = moving[e] || moving[curve.next(e)];
+/// Adds the pair (i, j) to edge i: half the value if both move, since j adds the other half.
+void addPair(const Curve& curve, int i, int j, bool bothMove, EdgeSum& sum) {
+  const Point2 a = curve.point(i);
+  const Point2 b = curve.point(curve.next(i));
+  const Point2 c = curve.point(j);
+  const Point2 d = curve.point(curve.next(j));
+  EdgePairIntegral pair;
+  if (curve.next(i) == j) {
+    // The shared vertex's gradient is counted once, with the edge that starts there.
+    pair = joinedEdgesIntegral(a, b, d);
+    sum.byStart += pair.gradient[0];
+  } else if (curve.next(j) == i) {
+    pair = joinedEdgesIntegral(c, d, b);
+    sum.byStart += pair.gradient[1];
+    sum.byEnd += pair.gradient[3];
+  } else {
+    pair = apartEdgesIntegral(a, b, c, d);
+    sum.byStart += pair.gradient[0];
+    sum.byEnd += pair.gradient[1];
   }
-
-  [[nodiscard]] bool moves(int e) const { return moves_[e]; }
-
-  /// Adds the pair (i, j) to edge i: half the value if both move, since j adds the other half.
-  void addPair(int i, int j, EdgeSum& sum) const {
-    const Point2 a = curve_.point(i);
-    const Point2 b = curve_.point(curve_.next(i));
-    const Point2 c = curve_.point(j);
-    const Point2 d = curve_.point(curve_.next(j));
-    EdgePairIntegral pair;
-    if (curve_.next(i) == j) {
-      pair = joinedEdgesIntegral(a, b, d);
-      pair.gradient[2].setZero();
-      // The shared vertex's gradient is counted once, with the edge that starts there.
-      sum.byStart += pair.gradient[0];
-    } else if (curve_.next(j) == i) {
-      pair = joinedEdgesIntegral(c, d, b);
-      sum.byStart += pair.gradient[1];
-      sum.byEnd += pair.gradient[3];
-    } else {
-      pair = apartEdgesIntegral(a, b, c, d);
-      sum.byStart += pair.gradient[0];
-      sum.byEnd += pair.gradient[1];
-    }
-    sum.value += moves_[j] ? 0.5 * pair.value : pair.value;
-    ++sum.pairs;
-  }
-
-  void addSelf(int e, EdgeSum& sum) const {
-    const Point2 t = curve_.point(curve_.next(e)) - curve_.point(e);
-    const double length = t.norm();
-    sum.value += length * std::log(length) - length;
-    const Point2 gradient = std::log(length) * t / length;
-    sum.byStart -= gradient;
-    sum.byEnd += gradient;
-  }
-
-  void addFar(int e, const EdgeTree::Node& cluster, EdgeSum& sum) const {
-    const EdgePairIntegral far =
-        farIntegral(curve_.point(e), curve_.point(curve_.next(e)), cluster);
-    sum.value += (cluster.anyMoves ? 0.5 : 1.0) * far.value;
-    sum.byStart += far.gradient[0];
-    sum.byEnd += far.gradient[1];
-  }
-
- private:
-  const Curve& curve_;
-  std::vector<bool> moves_;
-};
-
-/// Sums what each moving edge has with all others, given by addOthers(edge, sum).
-template <class AddOthers>
-PolygonKnotValue sumOverEdges(const Curve& curve, const std::vector<bool>& moving,
-                              const Summation& summation, const AddOthers& addOthers) {
-  constexpr std::size_t kPairsPerTask = 8192;  // about a millisecond: less is not worth a thread
-  const int n = curve.edgeCount();
-  const std::size_t grain = kPairsPerTask / static_cast<std::size_t>(n) + 1;
-  std::vector<EdgeSum> sums(n);
-  parallelFor(n, grain, [&](std::size_t index) {
-    const int i = static_cast<int>(index);
-    if (!summation.moves(i)) return;
-    summation.addSelf(i, sums[i]);
-    addOthers(i, sums[i]);
-  });
-  PolygonKnotValue result{.gradient = Positions2::Zero(curve.vertexCount(), 2)};
-  for (int e = 0; e < n; ++e) {
-    result.value += sums[e].value;
-    result.pairs += sums[e].pairs;
-    result.gradient.row(e) += sums[e].byStart.transpose();
-    result.gradient.row(curve.next(e)) += sums[e].byEnd.transpose();
-  }
-  for (int v = 0; v < curve.vertexCount(); ++v) {
-    if (!moving[v]) result.gradient.row(v).setZero();
-  }
-  return result;
+  sum.value += bothMove ? 0.5 * pair.value : pair.value;
+  ++sum.pairs;
 }
 
-/// @param openingRatio  0: every pair by itself
-class ClusterSum final : public PolygonKnotEnergy {
- public:
-  ClusterSum(const Curve& curve, const std::vector<bool>& moving, double openingRatio)
-      : closed_(curve.closed), moving_(moving), openingRatio_(openingRatio) {}
+void addSelf(const Curve& curve, int e, EdgeSum& sum) {
+  const Point2 t = curve.point(curve.next(e)) - curve.point(e);
+  const double length = t.norm();
+  sum.value += length * std::log(length) - length;
+  const Point2 gradient = std::log(length) * t / length;
+  sum.byStart -= gradient;
+  sum.byEnd += gradient;
+}
 
-  [[nodiscard]] PolygonKnotValue evaluate(const Positions2& positions) const override {
-    const Curve curve{positions, closed_};
-    const Summation summation(curve, moving_);
-    const EdgeTree tree(curve, [&](int e) { return summation.moves(e); });
-    return sumOverEdges(curve, moving_, summation, [&](int i, EdgeSum& sum) {
-      tree.traverse(
-          curve.point(i), curve.point(curve.next(i)), openingRatio_,
-          [&](const EdgeTree::Node& cluster) { summation.addFar(i, cluster, sum); },
-          [&](int j) {
-            if (j != i) summation.addPair(i, j, sum);
-          });
-    });
-  }
-
- private:
-  bool closed_;
-  std::vector<bool> moving_;
-  double openingRatio_;
-};
+void addFar(const Curve& curve, int e, const EdgeTree::Node& cluster, EdgeSum& sum) {
+  const EdgePairIntegral far = farIntegral(curve.point(e), curve.point(curve.next(e)), cluster);
+  sum.value += (cluster.anyMoves ? 0.5 : 1.0) * far.value;
+  sum.byStart += far.gradient[0];
+  sum.byEnd += far.gradient[1];
+}
 
 }  // namespace
 
@@ -306,31 +237,54 @@ EdgePairIntegral joinedEdgesIntegral(const Point2& a, const Point2& b, const Poi
   return result;
 }
 
-std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(PolygonKnot method, const Curve& curve,
-                                                         const std::vector<bool>& moving,
-                                                         double openingRatio) {
-  if (static_cast<int>(moving.size()) != curve.vertexCount()) {
-    throw InvalidInput("knot energy: " + std::to_string(moving.size()) + " marks for " +
+PolygonKnotEnergy::PolygonKnotEnergy(PolygonKnot method, const Curve& curve,
+                                     std::vector<bool> moving, double openingRatio)
+    : method_(method), closed_(curve.closed), moving_(std::move(moving)) {
+  if (static_cast<int>(moving_.size()) != curve.vertexCount()) {
+    throw InvalidInput("knot energy: " + std::to_string(moving_.size()) + " marks for " +
                        std::to_string(curve.vertexCount()) + " vertices, one each is needed");
   }
   if (!(openingRatio > 0 && openingRatio < 1)) {
     throw InvalidInput("knot energy: the opening ratio must lie between 0 and 1");
   }
-  switch (method) {
-    case PolygonKnot::Auto: {
-      constexpr double kMostPairs = 4e6;  // a third of a second on one processor
-      const auto movers = static_cast<double>(std::ranges::count(moving, true));
-      const bool few = movers * curve.edgeCount() <= kMostPairs;
-      return std::make_unique<ClusterSum>(curve, moving, few ? 0 : openingRatio);
-    }
-    case PolygonKnot::Tree:
-      return std::make_unique<ClusterSum>(curve, moving, openingRatio);
-    case PolygonKnot::AllPairs:
-      return std::make_unique<ClusterSum>(curve, moving, 0);
-    case PolygonKnot::Off:
-      break;
+  constexpr double kMostPairs = 4e6;  // a third of a second on one processor
+  const auto movers = static_cast<double>(std::ranges::count(moving_, true));
+  const bool many = movers * curve.edgeCount() > kMostPairs;
+  const bool far = method == PolygonKnot::Tree || (method == PolygonKnot::Auto && many);
+  openingRatio_ = far ? openingRatio : 0;
+}
+
+PolygonKnotValue PolygonKnotEnergy::evaluate(const Positions2& positions) const {
+  constexpr std::size_t kPairsPerTask = 8192;  // about a millisecond: less is not worth a thread
+  PolygonKnotValue result{.gradient = Positions2::Zero(positions.rows(), 2)};
+  if (method_ == PolygonKnot::Off) return result;
+  const Curve curve{positions, closed_};
+  const auto moves = [&](int e) { return moving_[e] || moving_[curve.next(e)]; };
+  const EdgeTree tree(curve, moves);
+  const auto n = static_cast<std::size_t>(curve.edgeCount());
+  std::vector<EdgeSum> sums(n);
+  parallelFor(n, kPairsPerTask / n + 1, [&](std::size_t index) {
+    const int i = static_cast<int>(index);
+    if (!moves(i)) return;
+    EdgeSum& sum = sums[index];
+    addSelf(curve, i, sum);
+    tree.traverse(
+        curve.point(i), curve.point(curve.next(i)), openingRatio_,
+        [&](const EdgeTree::Node& cluster) { addFar(curve, i, cluster, sum); },
+        [&](int j) {
+          if (j != i) addPair(curve, i, j, moves(j), sum);
+        });
+  });
+  for (int e = 0; e < curve.edgeCount(); ++e) {
+    result.value += sums[e].value;
+    result.pairs += sums[e].pairs;
+    result.gradient.row(e) += sums[e].byStart.transpose();
+    result.gradient.row(curve.next(e)) += sums[e].byEnd.transpose();
   }
-  return nullptr;
+  for (int v = 0; v < curve.vertexCount(); ++v) {
+    if (!moving_[v]) result.gradient.row(v).setZero();
+  }
+  return result;
 }
 
 }  // namespace explica::planar

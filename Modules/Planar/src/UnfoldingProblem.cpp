@@ -52,16 +52,14 @@ UnfoldingProblem::UnfoldingProblem(const Curve& curve, const Region& region, con
   for (const int e : edgesOf(curve, movingRegion)) {
     if (!inRegion[e]) softEdges_.push_back(e);
   }
-  knot_ =
-      makePolygonKnotEnergy(options.noTopology ? PolygonKnot::Off : options.knot, curve, moving_);
+  knot_.emplace(options.noTopology ? PolygonKnot::Off : options.knot, curve, moving_);
 }
 
-std::pair<double, Positions2> UnfoldingProblem::knot(const Curve& curve) {
-  if (!knot_) return {0.0, Positions2::Zero(curve.vertexCount(), 2)};
+PolygonKnotValue UnfoldingProblem::knot(const Curve& curve) {
   const PhaseClock watch(secondsTopology_);
   PolygonKnotValue value = knot_->evaluate(curve.positions);
   lastKnot_ = value.value;
-  return {value.value, std::move(value.gradient)};
+  return value;
 }
 
 std::vector<VertexEdgePair> UnfoldingProblem::pairsWithin(double reach) {

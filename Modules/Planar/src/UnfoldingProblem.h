@@ -43,7 +43,7 @@ class UnfoldingProblem {
   void moveTo(const Positions2& positions) { curve_.positions = positions; }
 
   /// Knot energy of `curve`, or zeros if there is none.
-  [[nodiscard]] std::pair<double, Positions2> knot(const Curve& curve);
+  [[nodiscard]] PolygonKnotValue knot(const Curve& curve);
   /// Vertex-edge pairs of the present curve within `reach`; none without topology preservation.
   [[nodiscard]] std::vector<VertexEdgePair> pairsWithin(double reach);
   [[nodiscard]] double safeStep(const Positions2& target, const std::vector<VertexEdgePair>& pairs);
@@ -67,7 +67,7 @@ class UnfoldingProblem {
   std::vector<int> keptEdges_;
   std::vector<int> softEdges_;
   Eigen::VectorXd restLengths_;
-  std::unique_ptr<PolygonKnotEnergy> knot_;  ///< null if there is none
+  std::optional<PolygonKnotEnergy> knot_;  ///< once it is known who moves
   StartSizes start_;
   double lastKnot_ = 0;
   double lastLeastDistance_ = kInfinity;

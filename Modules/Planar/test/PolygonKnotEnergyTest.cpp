@@ -125,8 +125,8 @@ std::vector<bool> all(const Curve& curve) {
 }
 
 double energyOf(const Curve& curve) {
-  return makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
-      ->evaluate(curve.positions)
+  return PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+      .evaluate(curve.positions)
       .value;
 }
 
@@ -146,8 +146,8 @@ TEST(PolygonKnotEnergy, DoesNotChangeWhenAnEdgeIsSplit) {
 TEST(PolygonKnotEnergy, GradientEqualsDifferences) {
   const Curve curve = makePolygon19().curve;
   const Positions2 numeric = centralDifferences(curve, energyOf, 1e-4);
-  const Positions2 exact = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
-                               ->evaluate(curve.positions)
+  const Positions2 exact = PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                               .evaluate(curve.positions)
                                .gradient;
   EXPECT_LT((numeric - exact).norm(), 1e-7 * exact.norm());
 }
@@ -156,26 +156,26 @@ TEST(PolygonKnotEnergy, GradientWithVerticesAtRestIsThatOfThoseThatMove) {
   const Curve curve = makePolygon19().curve;
   std::vector<bool> some(curve.vertexCount(), false);
   for (int v = 3; v < 9; ++v) some[v] = true;
-  const Positions2 whole = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
-                               ->evaluate(curve.positions)
+  const Positions2 whole = PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                               .evaluate(curve.positions)
                                .gradient;
-  const auto energy = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, some);
-  const Positions2 part = energy->evaluate(curve.positions).gradient;
+  const auto energy = PolygonKnotEnergy(PolygonKnot::AllPairs, curve, some);
+  const Positions2 part = energy.evaluate(curve.positions).gradient;
   for (int v = 0; v < curve.vertexCount(); ++v) {
     const Eigen::RowVector2d expected =
         some[v] ? Eigen::RowVector2d(whole.row(v)) : Eigen::RowVector2d::Zero();
     EXPECT_LT((part.row(v) - expected).norm(), 1e-12);
   }
   // And the value changes as its gradient says.
-  const auto value = [&](const Curve& c) { return energy->evaluate(c.positions).value; };
+  const auto value = [&](const Curve& c) { return energy.evaluate(c.positions).value; };
   const Positions2 numeric = centralDifferences(curve, value, 1e-4);
   for (int v = 3; v < 9; ++v) EXPECT_LT((numeric.row(v) - part.row(v)).norm(), 1e-6);
 }
 
 TEST(PolygonKnotEnergy, ForcesAndTorqueVanishInAll) {
   const Curve curve = makePolygon34().curve;
-  const Positions2 g = makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
-                           ->evaluate(curve.positions)
+  const Positions2 g = PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))
+                           .evaluate(curve.positions)
                            .gradient;
   EXPECT_LT(g.colwise().sum().norm(), 1e-9 * g.norm());
   double torque = 0;
@@ -208,7 +208,7 @@ TEST(PolygonKnotEnergy, AutoTakesPairsWhileTheyAreFewAndTheTreeBeyond) {
     const Curve curve = ring(n);
     const std::vector<bool> moving(n, true);
     const auto valueBy = [&](PolygonKnot method) {
-      return makePolygonKnotEnergy(method, curve, moving)->evaluate(curve.positions);
+      return PolygonKnotEnergy(method, curve, moving).evaluate(curve.positions);
     };
     const PolygonKnotValue chosen = valueBy(PolygonKnot::Auto), wanted = valueBy(expected);
     EXPECT_EQ(chosen.value, wanted.value) << n;
@@ -229,11 +229,11 @@ TEST(PolygonKnotEnergy, TreeTendsToAllPairs) {
   std::vector<bool> moving(n, false);
   for (int v = 0; v < 400; ++v) moving[v] = true;
   const PolygonKnotValue exact =
-      makePolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving)->evaluate(ring.positions);
+      PolygonKnotEnergy(PolygonKnot::AllPairs, ring, moving).evaluate(ring.positions);
   double before = kInfinity;
   for (const double ratio : {0.5, 0.25, 0.125}) {
     const PolygonKnotValue tree =
-        makePolygonKnotEnergy(PolygonKnot::Tree, ring, moving, ratio)->evaluate(ring.positions);
+        PolygonKnotEnergy(PolygonKnot::Tree, ring, moving, ratio).evaluate(ring.positions);
     const double error = (tree.gradient - exact.gradient).norm() / exact.gradient.norm();
     EXPECT_LT(error, before / 3);
     EXPECT_LT(std::abs(tree.value / exact.value - 1), ratio * ratio * ratio);
@@ -248,10 +248,10 @@ TEST(PolygonKnotEnergy, DoesNotDependOnTheNumberOfThreads) {
   const int threads = threadCount();
   setThreadCount(1);
   const PolygonKnotValue one =
-      makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))->evaluate(curve.positions);
+      PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve)).evaluate(curve.positions);
   setThreadCount(4);
   const PolygonKnotValue four =
-      makePolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve))->evaluate(curve.positions);
+      PolygonKnotEnergy(PolygonKnot::AllPairs, curve, all(curve)).evaluate(curve.positions);
   setThreadCount(threads);
   EXPECT_EQ(one.value, four.value);
   EXPECT_EQ(one.gradient, four.gradient);
@@ -259,10 +259,12 @@ TEST(PolygonKnotEnergy, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(PolygonKnotEnergy, BadArgumentsAreRefused) {
   const Curve curve = makeCircle(8, 1);
-  EXPECT_THROW((void)makePolygonKnotEnergy(PolygonKnot::Tree, curve, {true}), InvalidInput);
-  EXPECT_THROW((void)makePolygonKnotEnergy(PolygonKnot::Tree, curve, all(curve), 1.0),
-               InvalidInput);
-  EXPECT_EQ(makePolygonKnotEnergy(PolygonKnot::Off, curve, all(curve)), nullptr);
+  EXPECT_THROW((void)PolygonKnotEnergy(PolygonKnot::Tree, curve, {true}), InvalidInput);
+  EXPECT_THROW((void)PolygonKnotEnergy(PolygonKnot::Tree, curve, all(curve), 1.0), InvalidInput);
+  const PolygonKnotValue none =
+      PolygonKnotEnergy(PolygonKnot::Off, curve, all(curve)).evaluate(curve.positions);
+  EXPECT_EQ(none.value, 0);
+  EXPECT_TRUE(none.gradient.isZero(0));
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 namespace explica::planar {
@@ -47,23 +46,6 @@ struct PolygonKnotValue {
   std::size_t pairs = 0;  ///< edge pairs integrated one by one
 };
 
-/// Self-repulsion of a polygon, [Thesis, Eq. 4.19] with the weight of its first sum corrected:
-///
-///     E = sum_i (|C_i| ln|C_i| - |C_i|) + 1/2 sum_{i != j} integral integral 1/|x - y|,
-///
-/// of which the terms count that have an edge with a moving vertex: what the rest adds is constant.
-/// The finite part of (1/2) integral integral 1/|x - y| gives the first sum the weight 1; printed
-/// is 2.  With 1, splitting an edge leaves E unchanged, as it must; with 2 it does not.
-///
-/// To be minimised: motion descends the gradient.  The plane's twin of repulsion::KnotEnergy.
-class PolygonKnotEnergy {
- public:
-  virtual ~PolygonKnotEnergy() = default;
-
-  /// @param positions  V x 2; vertices that do not move must be where they were at construction
-  [[nodiscard]] virtual PolygonKnotValue evaluate(const Positions2& positions) const = 0;
-};
-
 /// How the repulsive (knot) energy is evaluated.
 enum class PolygonKnot {
   Auto,      ///< every pair up to four million, the tree beyond, whose time grows as n log n
@@ -77,12 +59,34 @@ constexpr auto enumWords(PolygonKnot) {
       {{Auto, "auto"}, {Tree, "tree"}, {AllPairs, "all-pairs"}, {Off, "off"}});
 }
 
-/// The evaluator of this name; null for Off.  Results do not depend on the number of threads.
-/// @param moving        V flags
-/// @param openingRatio  tree only: cluster radius over distance below which it is taken as a whole
-/// @throws InvalidInput  flags of another size, opening ratio not in (0, 1)
-[[nodiscard]] std::unique_ptr<PolygonKnotEnergy> makePolygonKnotEnergy(
-    PolygonKnot method, const Curve& curve, const std::vector<bool>& moving,
-    double openingRatio = 0.25);
+/// Self-repulsion of a polygon, [Thesis, Eq. 4.19] with the weight of its first sum corrected:
+///
+///     E = sum_i (|C_i| ln|C_i| - |C_i|) + 1/2 sum_{i != j} integral integral 1/|x - y|,
+///
+/// of which the terms count that have an edge with a moving vertex: what the rest adds is constant.
+/// The finite part of (1/2) integral integral 1/|x - y| gives the first sum the weight 1; printed
+/// is 2.  With 1, splitting an edge leaves E unchanged, as it must; with 2 it does not.
+///
+/// To be minimised: motion descends the gradient.  The plane's twin of repulsion::KnotEnergy.
+/// Results do not depend on the number of threads.
+class PolygonKnotEnergy {
+ public:
+  /// @param moving        V flags
+  /// @param openingRatio  tree only: cluster radius over distance below which it is taken as a
+  ///                      whole
+  /// @throws InvalidInput  flags of another size, opening ratio not in (0, 1)
+  PolygonKnotEnergy(PolygonKnot method, const Curve& curve, std::vector<bool> moving,
+                    double openingRatio = 0.25);
+
+  /// @param positions  V x 2; vertices that do not move must be where they were at construction
+  /// @return all 0 for Off
+  [[nodiscard]] PolygonKnotValue evaluate(const Positions2& positions) const;
+
+ private:
+  PolygonKnot method_;
+  bool closed_;
+  std::vector<bool> moving_;
+  double openingRatio_ = 0;  ///< 0: every pair by itself
+};
 
 }  // namespace explica::planar
