@@ -16,34 +16,27 @@ struct Ring {
 };
 constexpr Ring kBasal{1, 6}, kMiddle{7, 12}, kApical{13, 16};  // AHA's numbers
 
-/// Mean over the ring's segments that have a number.
-double ringMean(const Frame& frame, const Ring& ring) {
+/// Mean of what is known of the ring's segments, by their numbers less one.
+template <class ValueOf>
+double ringMean(const Ring& ring, const ValueOf& valueOf) {
   double sum = 0;
   int count = 0;
-  for (const Segment& row : frame.segments->rows) {
-    if (row.number < ring.first || row.number > ring.last || !std::isfinite(row.thickness)) {
-      continue;
-    }
-    sum += row.thickness;
+  for (int n = ring.first; n <= ring.last; ++n) {
+    const double value = valueOf(static_cast<std::size_t>(n - 1));
+    if (!std::isfinite(value)) continue;
+    sum += value;
     ++count;
   }
   return count > 0 ? sum / count : kNaN;
 }
 
-/// Mean of end-systole less end-diastole over the ring's segments that have both.
+/// End-systole less end-diastole.
 double ringThickening(const Beat& beat, const Ring& ring) {
   if (beat.systole == beat.diastole || !beat.atSystole().segments) return kNaN;
-  double sum = 0;
-  int count = 0;
-  for (int n = ring.first; n <= ring.last; ++n) {
-    const auto s = static_cast<std::size_t>(n - 1);
-    const double change = beat.atSystole().segments->rows[s].thickness -
-                          beat.atDiastole().segments->rows[s].thickness;
-    if (!std::isfinite(change)) continue;
-    sum += change;
-    ++count;
-  }
-  return count > 0 ? sum / count : kNaN;
+  return ringMean(ring, [&](std::size_t s) {
+    return beat.atSystole().segments->rows[s].thickness -
+           beat.atDiastole().segments->rows[s].thickness;
+  });
 }
 
 std::string spreadText(const Spread& spread) {
@@ -53,76 +46,34 @@ std::string spreadText(const Spread& spread) {
 }  // namespace
 
 const std::vector<Reference>& references() {
+  using enum Quantity;
   const std::string kawel = "Kawel et al. 2012, Circ Cardiovasc Imaging 5:500";
+  const std::string boehm = "Kawel-Boehm et al. 2015, J Cardiovasc Magn Reson 17:29";
   const std::string ubachs = "Ubachs et al. 2009, J Cardiovasc Magn Reson 11(Suppl 1):P61";
   const std::string hudsmith = "Hudsmith et al. 2005, J Cardiovasc Magn Reson 7:775";
+  const std::string petersen = "Petersen et al. 2017, J Cardiovasc Magn Reson 19:18";
+  const std::string old = "169 women and 131 men, 65.6 years in the mean";
   const std::string young = "20 women and 30 men, 35 years in the mean";
   const std::string oxford = "45 women and 63 men, 21 to 68 years";
+  const std::string biobank = "432 women and 368 men, 45 to 74 years";
+  const auto row = [](auto... fields) { return Reference{fields...}; };
+  const auto sd = [](double mean, double deviation) { return Spread{mean, deviation}; };
   static const std::vector<Reference> all = {
-      {Quantity::MiddleThickness,
-       "end-diastolic thickness, middle ring",
-       "mm",
-       {5.3, 0.9},
-       {6.3, 1.1},
-       "n/a",
-       "169 women and 131 men, 65.6 years in the mean",
-       kawel},
-      {Quantity::BasalThickening,
-       "thickening, basal ring",
-       "mm",
-       {4.3, 1.4},
-       {4.3, 1.4},
-       "n/a",
-       young,
-       ubachs},
-      {Quantity::MiddleThickening,
-       "thickening, middle ring",
-       "mm",
-       {4.4, 1.4},
-       {4.4, 1.4},
-       "n/a",
-       young,
-       ubachs},
-      {Quantity::ApicalThickening,
-       "thickening, apical ring",
-       "mm",
-       {3.2, 1.4},
-       {3.2, 1.4},
-       "n/a",
-       young,
-       ubachs},
-      {Quantity::DiastolicVolume,
-       "end-diastolic volume of the cavity",
-       "ml",
-       {135, 26},
-       {160, 29},
-       "wall",
-       oxford,
-       hudsmith},
-      {Quantity::SystolicVolume,
-       "end-systolic volume of the cavity",
-       "ml",
-       {42, 12},
-       {50, 16},
-       "wall",
-       oxford,
-       hudsmith},
-      {Quantity::Ejection,
-       "ejection fraction",
-       "%",
-       {61, 5},
-       {58, 5},
-       "cavity",
-       "432 women and 368 men, 45 to 74 years",
-       "Petersen et al. 2017, J Cardiovasc Magn Reson 19:18"},
-      {Quantity::Mass,
-       "mass of the wall",
-       "g",
-       {98, 21},
-       {134, 21},
-       "wall",
-       "adults, several studies together",
-       "Kawel-Boehm et al. 2015, J Cardiovasc Magn Reson 17:29"}};
+      row(MiddleThickness, "end-diastolic thickness, middle ring", "mm", sd(5.3, 0.9), sd(6.3, 1.1),
+          "n/a", old, kawel),
+      row(BasalThickening, "thickening, basal ring", "mm", sd(4.3, 1.4), sd(4.3, 1.4), "n/a", young,
+          ubachs),
+      row(MiddleThickening, "thickening, middle ring", "mm", sd(4.4, 1.4), sd(4.4, 1.4), "n/a",
+          young, ubachs),
+      row(ApicalThickening, "thickening, apical ring", "mm", sd(3.2, 1.4), sd(3.2, 1.4), "n/a",
+          young, ubachs),
+      row(DiastolicVolume, "end-diastolic volume of the cavity", "ml", sd(135, 26), sd(160, 29),
+          "wall", oxford, hudsmith),
+      row(SystolicVolume, "end-systolic volume of the cavity", "ml", sd(42, 12), sd(50, 16), "wall",
+          oxford, hudsmith),
+      row(Ejection, "ejection fraction", "%", sd(61, 5), sd(58, 5), "cavity", biobank, petersen),
+      row(Mass, "mass of the wall", "g", sd(98, 21), sd(134, 21), "wall",
+          "adults, several studies together", boehm)};
   return all;
 }
 
@@ -134,7 +85,8 @@ double valueOf(const Beat& beat, Quantity quantity) {
   const bool two = beat.systole != beat.diastole;
   switch (quantity) {
     case Quantity::MiddleThickness:
-      return ringMean(beat.atDiastole(), kMiddle);
+      return ringMean(kMiddle,
+                      [&](std::size_t s) { return beat.atDiastole().segments->rows[s].thickness; });
     case Quantity::BasalThickening:
       return ringThickening(beat, kBasal);
     case Quantity::MiddleThickening:

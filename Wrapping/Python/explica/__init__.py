@@ -42,32 +42,7 @@ from ._images import (
     write_volume,
 )
 from ._sampling import nearest_columns, positions_at_depth, sample
-from ._surfaces import (
-    Unfolder,
-    average_visibility,
-    backfacing_share,
-    distance_errors,
-    distortion,
-    enclosed_volume,
-    face_areas,
-    face_normals,
-    flat_grid,
-    flatten,
-    geodesic_distances,
-    inspect_mesh,
-    mean_curvature,
-    sulcal_depth,
-    relief_cuts,
-    repair_surface,
-    select_region,
-    self_intersections,
-    unfold,
-    vertex_areas,
-    vertex_flux,
-    vertex_normals,
-    visible_fraction,
-    write_surface,
-)
+from ._surfaces import *  # every function of a surface
 
 __version__ = provenance.software()["version"]
 __all__ = [name for name in dir() if not name.startswith("_")]

@@ -44,28 +44,14 @@ def of_mesh(function, module=_explica, place=0):
     return call
 
 
-average_visibility = of_mesh(_explica.average_visibility)
-backfacing_share = of_mesh(_explica.backfacing_share)
-distance_errors = of_mesh(_explica.distance_errors)
-distortion = of_mesh(_explica.distortion)
-enclosed_volume = of_mesh(_explica.enclosed_volume)
-face_areas = of_mesh(_explica.face_areas)
-face_normals = of_mesh(_explica.face_normals)
-flat_grid = of_mesh(_explica.flat_grid)
-flatten = of_mesh(_explica.flatten)
-geodesic_distances = of_mesh(_explica.geodesic_distances)
-inspect_mesh = of_mesh(_explica.inspect_mesh)
-mean_curvature = of_mesh(_explica.mean_curvature)
-sulcal_depth = of_mesh(_explica.sulcal_depth)
-relief_cuts = of_mesh(_explica.relief_cuts)
-repair_surface = of_mesh(_explica.repair_surface)
-select_region = of_mesh(_explica.select_region)
-self_intersections = of_mesh(_explica.self_intersections)
-unfold = of_mesh(_explica.unfold)
-vertex_areas = of_mesh(_explica.vertex_areas)
-vertex_flux = of_mesh(_explica.vertex_flux)
-vertex_normals = of_mesh(_explica.vertex_normals)
-visible_fraction = of_mesh(_explica.visible_fraction)
+def _of_meshes():
+    """The compiled functions whose arguments begin with positions and faces, by name."""
+    for name, function in vars(_explica).items():
+        if callable(function) and f"{name}(positions: " in (function.__doc__ or ""):
+            yield name, of_mesh(function)
+
+
+globals().update(_of_meshes())
 write_surface = of_mesh(_explica.write_surface, place=1)
 
 
@@ -89,3 +75,4 @@ def _class_of_mesh(base):
 
 
 Unfolder = _class_of_mesh(_explica.Unfolder)
+__all__ = ["Unfolder", "write_surface", *dict(_of_meshes())]
