@@ -341,7 +341,7 @@ def annular_field(folder, cells=None):
     middle = voxels[abs(u[tissue] - 0.5) < 0.15]
     around = numpy.argsort(numpy.arctan2(*((middle - middle.mean(0)).T)))
     panels[2].streamplot(x, y, *tangent.transpose(2, 1, 0), color="#0f6b3a", linewidth=1.2, arrowsize=0.7,
-                         density=4, start_points=(middle * spacing)[around[:: max(1, len(around) // 48)]])
+                         density=4, minlength=0.01, start_points=(middle * spacing)[around[:: max(1, len(around) // 48)]])
     if cells:
         points, corners = grid_cells(cells)
         near = abs(points @ numpy.linalg.inv(affine)[2, :3] + numpy.linalg.inv(affine)[2, 3] - k) <= 0.5
