@@ -5,6 +5,8 @@
 #include "Explica/Core/Base64.h"
 #include "Explica/Core/Errors.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -156,6 +158,17 @@ void appendNumber(std::string& text, T value) {
   char buffer[40];
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value);
   text.append(buffer, result.ptr);
+}
+
+/// A line of a row's numbers after a word.
+template <class Row>
+void appendRow(std::string& text, std::string_view head, const Row& row, char between = ' ') {
+  text += head;
+  for (Eigen::Index k = 0; k < row.size(); ++k) {
+    if (k > 0) text += between;
+    appendNumber(text, row[k]);
+  }
+  text += '\n';
 }
 
 }  // namespace explica::io

@@ -31,7 +31,7 @@ void limit(decltype(RLIMIT_AS) what, rlim_t most) {
 
 /// Ends at a fault at once and silently, whatever handlers this program or its host has.
 void confine(std::size_t mostMemory) {
-  for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE}) {
+  for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPIPE, SIGALRM}) {
     std::signal(fault, SIG_DFL);
   }
   if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) dup2(nowhere, STDERR_FILENO);
@@ -39,6 +39,8 @@ void confine(std::size_t mostMemory) {
   std::ifstream("/proc/self/statm") >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + mostMemory);
   limit(RLIMIT_CPU, secondsFor(mostMemory));
+  alarm(static_cast<unsigned>(
+      6 * secondsFor(mostMemory)));  // of waiting, as for a lock that another thread had
   limit(RLIMIT_CORE, 0);
 }
 

@@ -260,21 +260,9 @@ LoadedSurface readObj(const std::filesystem::path& path, ByteView bytes) {
 
 void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh) {
   std::string text = "# RAS mm, written by Explica\n";
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    text += "v";
-    for (int k = 0; k < 3; ++k) {
-      text += ' ';
-      appendNumber(text, mesh.positions(v, k));
-    }
-    text += '\n';
-  }
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    text += "f";
-    for (int k = 0; k < 3; ++k) {
-      text += ' ';
-      appendNumber(text, mesh.faces(f, k) + 1);
-    }
-    text += '\n';
+  for (const auto& point : mesh.positions.rowwise()) appendRow(text, "v ", point);
+  for (const auto& face : mesh.faces.rowwise()) {
+    appendRow(text, "f ", Eigen::RowVector3i(face.array() + 1));
   }
   writeTextFile(path, text);
 }
@@ -337,20 +325,8 @@ LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
 void writeOff(const std::filesystem::path& path, const TriangleMesh& mesh) {
   std::string text = "OFF\n" + std::to_string(mesh.vertexCount()) + " " +
                      std::to_string(mesh.faceCount()) + " 0\n";
-  for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
-    for (int k = 0; k < 3; ++k) {
-      appendNumber(text, mesh.positions(v, k));
-      text += k < 2 ? ' ' : '\n';
-    }
-  }
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    text += '3';
-    for (int k = 0; k < 3; ++k) {
-      text += ' ';
-      appendNumber(text, mesh.faces(f, k));
-    }
-    text += '\n';
-  }
+  for (const auto& point : mesh.positions.rowwise()) appendRow(text, "", point);
+  for (const auto& face : mesh.faces.rowwise()) appendRow(text, "3 ", face);
   writeTextFile(path, text);
 }
 

@@ -154,12 +154,7 @@ Positions2 readPolygon(const std::filesystem::path& path) {
 
 void writePolygonCsv(const std::filesystem::path& path, const Positions2& polygon) {
   std::string text = "x,y\n";
-  for (Eigen::Index v = 0; v < polygon.rows(); ++v) {
-    appendNumber(text, polygon(v, 0));
-    text += ',';
-    appendNumber(text, polygon(v, 1));
-    text += '\n';
-  }
+  for (const auto& point : polygon.rowwise()) appendRow(text, "", point, ',');
   writeTextFile(path, text);
 }
 
