@@ -429,8 +429,7 @@ def comparison(work, page, fsaverage, surface, unfolded):
     if fsaverage:
         maps = {name: fsaverage / f"{name}_left.gii.gz" for name in ("infl", "sphere", "flat")}
     else:
-        inflated = work.run("inflated", "inflate", surface, "--target-seen", 0.998) / "inflated.surf.gii"
-        maps = {"inflated": inflated, "spherical": work.run("spherical", "sphere", inflated) / "sphere.surf.gii"}
+        maps = {"inflated": work.run("inflated", "inflate", surface, "--target-seen", 0.998) / "inflated.surf.gii"}
     maps = {"unfolded": unfolded / "unfolded.surf.gii", **maps}
     compared = columns_of(work.run("beside", "compare", surface, *maps.values(), "--label", unfolded / "region.label.gii",
                                    "--pairs", 4000) / "comparison.tsv")
