@@ -38,58 +38,6 @@ double safeTime(const std::array<Point2, 3>& x, std::array<Point2, 3> motion, do
   return t;
 }
 
-/// Vertices in square cells, so that those in a box are found without looking at the others.
-class VertexCells {
- public:
-  /// @param width  of a cell, mm; larger ones are taken where there would be more than 4 a vertex
-  VertexCells(const Positions2& positions, double width)
-      : low_(positions.colwise().minCoeff()), width_(width) {
-    const Eigen::Array2d extent = (positions.colwise().maxCoeff() - low_).transpose();
-    const double most = 4.0 * static_cast<double>(positions.rows()) + 64;
-    const auto cells = [&] { return ((extent / width_).floor() + 1).prod(); };
-    while (!(cells() <= most)) width_ *= 2;
-    columns_ = static_cast<int>(extent[0] / width_) + 1;
-    rows_ = static_cast<int>(extent[1] / width_) + 1;
-    begin_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-    for (Eigen::Index v = 0; v < positions.rows(); ++v) ++begin_[cellOf(positions.row(v)) + 1];
-    for (std::size_t c = 1; c < begin_.size(); ++c) begin_[c] += begin_[c - 1];
-    vertices_.resize(static_cast<std::size_t>(positions.rows()));
-    std::vector<int> at = begin_;
-    for (Eigen::Index v = 0; v < positions.rows(); ++v) {
-      vertices_[at[cellOf(positions.row(v))]++] = static_cast<int>(v);
-    }
-  }
-
-  /// Puts the vertices of all cells that the box touches, in rising order.
-  void around(const Eigen::Array2d& low, const Eigen::Array2d& high,
-              std::vector<int>& found) const {
-    found.clear();
-    const int firstColumn = along(low[0], 0, columns_), lastColumn = along(high[0], 0, columns_);
-    const int firstRow = along(low[1], 1, rows_), lastRow = along(high[1], 1, rows_);
-    for (int row = firstRow; row <= lastRow; ++row) {
-      const std::size_t first = static_cast<std::size_t>(row) * columns_;
-      found.insert(found.end(), vertices_.begin() + begin_[first + firstColumn],
-                   vertices_.begin() + begin_[first + lastColumn + 1]);
-    }
-    std::ranges::sort(found);
-  }
-
- private:
-  [[nodiscard]] int along(double coordinate, int axis, int count) const {
-    return static_cast<int>(std::clamp((coordinate - low_[axis]) / width_, 0.0, count - 1.0));
-  }
-  [[nodiscard]] std::size_t cellOf(const Eigen::RowVector2d& point) const {
-    return static_cast<std::size_t>(along(point[1], 1, rows_)) * columns_ +
-           along(point[0], 0, columns_);
-  }
-
-  Eigen::RowVector2d low_;
-  double width_;
-  int columns_ = 0, rows_ = 0;
-  std::vector<int> begin_;     ///< of each cell's vertices, row by row
-  std::vector<int> vertices_;  ///< cell by cell
-};
-
 }  // namespace
 
 VertexEdgeDistance vertexEdgeDistance(const Curve& curve, int vertex, int edge) {
@@ -108,8 +56,13 @@ std::vector<VertexEdgePair> nearbyPairs(const Curve& curve, const std::vector<bo
                                         double reach) {
   std::vector<VertexEdgePair> pairs;
   if (curve.edgeCount() == 0) return pairs;
-  const double meanEdge = edgeLengths(curve).mean();
-  const VertexCells cells(curve.positions, std::max(reach, meanEdge));
+  // Vertices in their order along the curve's longer side: those beside an edge are found without
+  // looking at the others.
+  Eigen::Index axis = 0;
+  (curve.positions.colwise().maxCoeff() - curve.positions.colwise().minCoeff()).maxCoeff(&axis);
+  std::vector<std::pair<double, int>> along;
+  for (int v = 0; v < curve.vertexCount(); ++v) along.emplace_back(curve.positions(v, axis), v);
+  std::ranges::sort(along);
   std::vector<int> near;
   constexpr int kAtOnce = 1024;  // edges before a stop is heard
   for (int e = 0; e < curve.edgeCount(); ++e) {
@@ -120,13 +73,16 @@ std::vector<VertexEdgePair> nearbyPairs(const Curve& curve, const std::vector<bo
     const bool edgeMoves = moving[e] || moving[f];
     const Eigen::Array2d low = a.cwiseMin(b).array() - reach;
     const Eigen::Array2d high = a.cwiseMax(b).array() + reach;
-    cells.around(low, high, near);
+    near.clear();
+    for (auto at = std::ranges::lower_bound(along, std::pair(low[axis], 0));
+         at != along.end() && at->first <= high[axis]; ++at) {
+      const double across = curve.positions(at->second, 1 - axis);
+      if (across >= low[1 - axis] && across <= high[1 - axis]) near.push_back(at->second);
+    }
+    std::ranges::sort(near);
     for (const int v : near) {
       if (v == e || v == f || !(edgeMoves || moving[v])) continue;
-      const double x = curve.positions(v, 0);
-      const double y = curve.positions(v, 1);
-      if (x < low[0] || x > high[0] || y < low[1] || y > high[1]) continue;
-      if (distanceToSegment({x, y}, a, b) > reach) continue;
+      if (distanceToSegment(curve.point(v), a, b) > reach) continue;
       double pairRange = range;
       if (v < curve.edgeCount() && curve.next(v) == e) {
         pairRange = std::min(pairRange, 0.5 * restLengths[v]);
