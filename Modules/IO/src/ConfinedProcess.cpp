@@ -19,9 +19,9 @@
 namespace explica::io {
 namespace {
 
-/// Seconds for work that may take so many bytes: libraries fill 100 MB in one.
+/// Seconds of processor time for work that may take so many bytes: far more than it needs.
 constexpr rlim_t secondsFor(std::size_t memory) {
-  return 10 + memory / 100'000'000;
+  return 2 + memory / 200'000'000;
 }
 
 void limit(decltype(RLIMIT_AS) what, rlim_t most) {
@@ -38,9 +38,9 @@ void confine(std::size_t mostMemory) {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + mostMemory);
-  limit(RLIMIT_CPU, secondsFor(mostMemory));
-  alarm(static_cast<unsigned>(
-      6 * secondsFor(mostMemory)));  // of waiting, as for a lock that another thread had
+  const rlim_t seconds = secondsFor(mostMemory);
+  limit(RLIMIT_CPU, seconds);
+  alarm(static_cast<unsigned>(6 * seconds));  // of waiting, as for another thread's lock
   limit(RLIMIT_CORE, 0);
 }
 

@@ -159,6 +159,7 @@ bool looksLikeHdf5(ByteView bytes) {
 
 std::vector<TransformEntry> readHdf5Transform(const std::filesystem::path& path, ByteView bytes) {
   const std::size_t most = kMostUnpacking * bytes.size() / sizeof(float);  // values
+  H5open();  // once, not in every process
   const ConfinedProcess reader(kLibrary + 4 * most * sizeof(double), [&](const auto& send) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     sendEntries(bytes, most, send);
