@@ -93,8 +93,8 @@ Header parse(const std::filesystem::path& path, const Bytes& bytes, const Detect
     value = one ? static_cast<Value>(load<One>(bytes.data() + at1, header.bigEndian))
                 : static_cast<Value>(load<Two>(bytes.data() + at2, header.bigEndian));
   });
-  constexpr double kFarthest = 1e15;  // beyond it there is no place in a file
-  if (!(header.offset >= 0 && header.offset <= kFarthest)) header.offset = -1;
+  constexpr double kFarthest = 0x1p63;  // no place in a file has this number
+  header.offset = std::abs(header.offset) < kFarthest ? std::floor(header.offset) : -1;
   return header;
 }
 
