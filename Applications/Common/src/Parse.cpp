@@ -79,10 +79,10 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
       return !p->positional && words[w] == "--" + p->option.name;
     });
     if (found == parameters.end() || (*found)->severalWords) continue;
-    const std::string type = (*found)->option.type();
+    const std::string type = (*found)->option.type;
     const bool point = type == "point2" || type == "point3";
     const bool numbers = type == "integer" || type == "number";
-    if (!point && !((*found)->option.isList() && numbers)) continue;
+    if (!point && !((*found)->option.isList && numbers)) continue;
     std::string joined;
     std::size_t count = 0;
     for (std::size_t n = w + 1; n < words.size() && looksLikeNumber(words[n]); ++n, ++count) {
@@ -178,12 +178,12 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
       continue;
     }
     binding.handle = parser.add_option(dashed(*all[i]), binding.values);
-    if (option.isList() && (all[i]->positional || all[i]->severalWords)) {
+    if (option.isList && (all[i]->positional || all[i]->severalWords)) {
       binding.handle->expected(1, 1 << 20);
     } else {
       binding.handle->expected(1)->allow_extra_args(false);
-      binding.handle->multi_option_policy(option.isList() ? CLI::MultiOptionPolicy::TakeAll
-                                                          : CLI::MultiOptionPolicy::Throw);
+      binding.handle->multi_option_policy(option.isList ? CLI::MultiOptionPolicy::TakeAll
+                                                        : CLI::MultiOptionPolicy::Throw);
     }
   }
 
