@@ -42,7 +42,7 @@ std::string patchWords(const StepFolder& step) {
   };
   const std::string centre = words("center"), radius = words("radius");
   if (centre.empty()) return words("label");
-  return radius + " mm about (" + centre + ") mm" + (step.side().empty() ? "" : ", " + step.side());
+  return radius + " mm about (" + centre + ") mm" + step.sideWords();
 }
 
 void listFacts(const ResultFolder& results, report::ReportContent& content) {

@@ -63,8 +63,8 @@ void showLayers(ResultFolder& results, const StepFolder& step, const FolderRepor
   if (!written && !step.has("depth.nii.gz")) return;
   const Volume<Label> layers = layersOf(step);
   report::MosaicOptions mosaic{.perRow = options.slices, .convention = options.convention};
-  const std::string side = step.side().empty() ? "" : ", " + step.side();
-  results.content().mosaics.push_back({kLayerPlace, (written ? "Layers" : "Depth") + side,
+  results.content().mosaics.push_back({kLayerPlace,
+                                       (written ? "Layers" : "Depth") + step.sideWords(),
                                        written ? "Each layer in its colour, the innermost orange."
                                                : "Five shells of equal depth from the inner to the "
                                                  "outer boundary, the innermost orange.",

@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Pipeline/DepthProfiles.h"
+#include "../Table.h"
 #include "Explica/Report/Chart.h"
 #include "ReportParts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 
 namespace explica::pipeline {
@@ -14,6 +17,93 @@ constexpr std::size_t kMostRegions = 11;                       // with a chart o
 constexpr std::size_t kMostRows = 80;                          // of a table
 constexpr std::size_t kMostCourses = 5;                        // depths over time in one chart
 constexpr const char* kDepthAxis = "depth (0 white, 1 pial)";  // in words
+constexpr const char* kAll = "all";                            // the row of all regions together
+
+/// Means over a region at one depth, frame by frame.
+struct AtDepth {
+  std::vector<double> mean, deviation;
+
+  [[nodiscard]] double average() const { return averageOf(mean, 1); }
+  /// Root mean square of the deviations of the frames.
+  [[nodiscard]] double spread() const { return std::sqrt(averageOf(deviation, 2)); }
+
+ private:
+  /// Mean of the known values, each to the power of 1 or 2.
+  static double averageOf(const std::vector<double>& values, int power) {
+    double sum = 0, count = 0;
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      sum += power == 2 ? value * value : value;
+      ++count;
+    }
+    return sum / count;
+  }
+};
+
+/// A region's profile of one volume: by depth, 0 at the white surface and 1 at the pial.
+struct DepthProfile {
+  std::string region;
+  std::map<double, AtDepth> depths;
+  double count = 0;  ///< vertices or voxels, at most at one depth
+};
+
+/// What `explica sample` says of one volume, region by region in its table's order.
+struct VolumeProfiles {
+  std::string volume;
+  std::string of;    ///< what is counted: "vertices" or "voxels"
+  std::string file;  ///< the table's name
+  std::vector<DepthProfile> regions;
+
+  /// The profile of all; nullptr where there is none.
+  [[nodiscard]] const DepthProfile* all() const {
+    const auto found = std::ranges::find(regions, kAll, &DepthProfile::region);
+    return found == regions.end() ? nullptr : &*found;
+  }
+  /// The others that have any vertex, the largest first, at most so many.
+  [[nodiscard]] std::vector<const DepthProfile*> largest(std::size_t most) const {
+    std::vector<const DepthProfile*> chosen;
+    for (const DepthProfile& profile : regions) {
+      if (profile.region != kAll && profile.count > 0) chosen.push_back(&profile);
+    }
+    std::ranges::stable_sort(chosen, std::ranges::greater{}, &DepthProfile::count);
+    if (chosen.size() > most) chosen.resize(most);
+    return chosen;
+  }
+};
+
+/// A row of a table, of the volume that its file is about.
+void add(const TableRow& row, VolumeProfiles& profiles) {
+  auto profile = std::ranges::find(profiles.regions, cellIn(row, "region"), &DepthProfile::region);
+  if (profile == profiles.regions.end()) {
+    profile = profiles.regions.insert(profile, {cellIn(row, "region"), {}, 0});
+  }
+  AtDepth& at = profile->depths[numberIn(row, "depth")];
+  at.mean.push_back(numberIn(row, "mean"));
+  at.deviation.push_back(numberIn(row, "sd"));
+  profile->count = std::max(profile->count, numberIn(row, "n"));
+}
+
+/// Profiles in a folder of `explica sample`: of profiles.tsv and of every NAME_layers.tsv.
+std::vector<VolumeProfiles> readProfiles(const StepFolder& step) {
+  constexpr const char* kProfiles = "profiles.tsv";
+  constexpr std::string_view kLayers = "_layers.tsv";
+  std::vector<VolumeProfiles> all;
+  const Table table = step.has(kProfiles) ? readTable(step.folder / kProfiles) : Table{};
+  for (const TableRow& row : table.rows) {
+    const std::string& volume = cellIn(row, "volume");
+    auto profiles = std::ranges::find(all, volume, &VolumeProfiles::volume);
+    if (profiles == all.end()) {
+      profiles = all.insert(profiles, {volume, "vertices", kProfiles, {}});
+    }
+    add(row, *profiles);
+  }
+  for (const std::filesystem::path& file : filesOf(step, kLayers)) {
+    const std::string name = file.filename().string();
+    all.push_back({name.substr(0, name.size() - kLayers.size()), "voxels", name, {}});
+    for (const TableRow& row : readTable(file).rows) add(row, all.back());
+  }
+  return all;
+}
 
 report::Series seriesOf(const DepthProfile& profile, const std::string& name) {
   report::Series line{name, {}, {}};
@@ -114,7 +204,7 @@ void show(ResultFolder& results, const VolumeProfiles& profiles) {
 }  // namespace
 
 void showProfiles(ResultFolder& results, const StepFolder& step) {
-  for (const VolumeProfiles& profiles : readDepthProfiles(step.folder)) show(results, profiles);
+  for (const VolumeProfiles& profiles : readProfiles(step)) show(results, profiles);
 }
 
 }  // namespace explica::pipeline

@@ -22,17 +22,16 @@ constexpr std::array kShown = {Shown{"thickness_mean", "mean thickness [mm]"},
 
 void tabulateRegions(ResultFolder& results, const StepFolder& step) {
   const Table read = readTable(step.folder / "regions.tsv");
-  const auto *names = read.text("region"), *measures = read.text("measure");
-  const auto* values = read.column("value");
-  if (names == nullptr || measures == nullptr || values == nullptr) return;
   std::map<std::string, std::array<std::string, kShown.size()>> rows;
-  for (std::size_t n = 0; n < read.rows(); ++n) {
+  for (const TableRow& row : read.rows) {
     for (std::size_t c = 0; c < kShown.size(); ++c) {
-      if ((*measures)[n] == kShown[c].measure) rows[(*names)[n]][c] = readable((*values)[n]);
+      if (cellIn(row, "measure") == kShown[c].measure) {
+        rows[cellIn(row, "region")][c] = readable(numberIn(row, "value"));
+      }
     }
   }
   report::ReportTable table{"",
-                            "Regions" + (step.side().empty() ? "" : ", " + step.side()),
+                            "Regions" + step.sideWords(),
                             "The mean is over the area; regions.tsv has all digits and measures.",
                             {"region"},
                             {}};

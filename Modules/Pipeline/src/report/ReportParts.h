@@ -18,7 +18,6 @@ inline constexpr const char* kPatchPlace = "view3d";
 inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
 inline constexpr const char* kProfilePlace = "profiles";
-inline constexpr const char* kSampledPlace = "sampled";
 inline constexpr const char* kFlatPlace = "flat";
 
 /// Close-ups of a kind on one page.
@@ -47,6 +46,14 @@ void showTissues(ResultFolder& results, const FolderReportOptions& options);
 void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                   const std::vector<GivenMap>& maps);
 
+/// The labels of a file for the view in three dimensions; none where there is no such file.
+void addLabels(report::Evolution& evolution, const std::string& title,
+               const std::filesystem::path& file);
+
+/// The reader's maps that fit.
+void addGiven(report::Evolution& evolution, const std::string& side,
+              const std::vector<GivenMap>& maps);
+
 /// The unfolding: what the interactive view plays, before and after, curves and histograms.
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps);
@@ -59,12 +66,19 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
 /// The inflation: what the interactive view plays.
 void showInflation(ResultFolder& results, const StepFolder& step);
 
-/// Frames that a step has written, thinned to what a page can hold.
+/// Frames that a step has written, thinned to what a page can hold, or else its surface and `end`,
+/// the file in which it was written at the end; none if that is empty.
 struct ShownFrames {
   std::vector<TriangleMesh> meshes;
   std::vector<std::string> titles;  ///< "frame 12, visibility 0.834"
 };
-[[nodiscard]] ShownFrames framesOf(const StepFolder& step, std::size_t most = 26);
+[[nodiscard]] ShownFrames framesOf(const StepFolder& step, const std::string& end = {},
+                                   std::size_t most = 26);
+
+/// The maps of a file for the view in three dimensions, known in the region alone or, if that is
+/// empty, everywhere; none where there is no such file.
+void addMaps(report::Evolution& evolution, const std::filesystem::path& file,
+             const std::vector<std::int32_t>& region = {});
 
 /// Layers of the tissue in slices, and the thickness layer by layer.
 void showLayers(ResultFolder& results, const StepFolder& step, const FolderReportOptions& options);
@@ -90,6 +104,9 @@ void showProfiles(ResultFolder& results, const StepFolder& step);
 /// A flat map: its picture, the patch with its maps in the view in three dimensions, stacks of
 /// depths, the table of regions, histograms of the distortion.
 void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<GivenMap>& maps);
+
+/// Volumes on the grid of a flat map, depth by depth.
+void showFlatStacks(ResultFolder& results, const StepFolder& step);
 
 /// Pictures that a command has drawn itself: SVG and PNG files of its folder.
 void showOwnPictures(ResultFolder& results, const StepFolder& step);

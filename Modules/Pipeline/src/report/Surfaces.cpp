@@ -171,36 +171,6 @@ void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& 
   results.content().views.push_back(std::move(views));
 }
 
-/// The reader's maps on the hemispheres that they fit, for the view in three dimensions.
-void addGiven(ResultFolder& results, const std::vector<Hemisphere>& all,
-              const std::vector<GivenMap>& maps) {
-  for (std::size_t h = 0; h < all.size(); ++h) {
-    for (const GivenMap& map : maps) {
-      if (!map.fits(all[h].pial.vertexCount(), all[h].side)) continue;
-      results.content().evolutions[h].maps.push_back(
-          {map.values, report::scaleFor(map.values, map.name, map.unit)});
-    }
-  }
-}
-
-/// Regions for the view in three dimensions.
-void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
-  if (!isThere(file)) return;
-  const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
-  report::EvolutionLabels named{title, {}, {}};
-  std::map<Label, std::int32_t> entryOf;
-  for (const io::LabelEntry& entry : labels.table) {
-    if (entry.key == 0) continue;
-    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
-    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
-  }
-  for (const Label key : labels.keys) {
-    const auto found = entryOf.find(key);
-    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
-  }
-  evolution.labels.push_back(std::move(named));
-}
-
 /// The surface that the patch is of: its shape's name.
 std::string openedShape(const StepFolder* unfold) {
   const auto file = unfold ? inputOf(*unfold, "SURFACE") : std::nullopt;
@@ -353,6 +323,23 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
 
 }  // namespace
 
+void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
+  if (!isThere(file)) return;
+  const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
+  report::EvolutionLabels named{title, {}, {}};
+  std::map<Label, std::int32_t> entryOf;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (entry.key == 0) continue;
+    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
+    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
+  }
+  for (const Label key : labels.keys) {
+    const auto found = entryOf.find(key);
+    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
+  }
+  evolution.labels.push_back(std::move(named));
+}
+
 void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                   const std::vector<GivenMap>& maps) {
   std::vector<Hemisphere> all;
@@ -377,7 +364,9 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
     results.attempt(word,
                     [&, file = file, word = word] { (void)addMap(results, shown, file, word); });
   }
-  results.attempt("Given maps", [&] { addGiven(results, all, maps); });
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    addGiven(results.content().evolutions[h], all[h].side, maps);
+  }
   results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
 }
 

@@ -86,7 +86,7 @@ void showTissues(ResultFolder& results, const FolderReportOptions& options) {
     const auto labels =
         io::readLabels(step->folder / (half ? "hemisphere.nii.gz" : "seg.nii.gz")).volume;
     results.content().mosaics.push_back(
-        {kTissuePlace, "Tissues" + (step->side().empty() ? "" : ", " + step->side()),
+        {kTissuePlace, "Tissues" + step->sideWords(),
          half ? "Green: white matter, filled. Blue: grey ribbon. Orange: fluid. Yellow: tissue cut "
                 "off at the midline and stem."
               : "Orange: fluid. Blue: grey matter. Green: white matter.",
