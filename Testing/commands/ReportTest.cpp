@@ -318,26 +318,6 @@ TEST(Report, MorphsASurfaceFromWhiteToFlatAndOpensThePatchOnIt) {
   EXPECT_EQ(browser.exitCode, 0) << browser;
 }
 
-TEST(Report, DrawsTheThicknessOfOthersBehind) {
-  TemporaryFolder folder;
-  makeSurface(folder, "40");
-  makeSurface(folder, "44");
-  ASSERT_EQ(explica({"report", folder / "s40"}).exitCode, 0);
-  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 0u);
-  const auto one = explica({"report", folder / "s40", "--reference", folder / "s44"});
-  ASSERT_EQ(one.exitCode, 0) << one;
-  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 2u)
-      << "the line, and its key";
-  EXPECT_NE(readText(folder / "s40/report.html").find("s44, median"), std::string::npos);
-  const auto many = explica({"report", folder / "s40", "--reference", folder.path().string()});
-  ASSERT_EQ(many.exitCode, 0) << many;
-  EXPECT_NE(readText(folder / "s40/report.html").find("2 hemispheres of the reference, median"),
-            std::string::npos);
-  const auto none = explica({"report", folder / "s40", "--reference", folder / "p40"});
-  EXPECT_EQ(none.exitCode, 2) << none;
-  EXPECT_NE(none.err.find("holds no thickness"), std::string::npos) << none;
-}
-
 TEST(Report, SaysWhatIsWrongOnceAndNamesCommandsNotFolders) {
   TemporaryFolder folder;
   ASSERT_EQ(explica({"phantom", "cortex", "--size", "40", "--out", folder / "p"}).exitCode, 0);

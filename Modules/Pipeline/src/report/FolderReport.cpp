@@ -5,7 +5,6 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/Termination.h"
-#include "References.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -168,7 +167,6 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   if (options.slices < 1 || options.slices > kMostSlices) {
     throw InvalidInput("slices: must be between 1 and " + std::to_string(kMostSlices));
   }
-  requireThickness(options.references);
   if (!isFolder(folder)) throw InvalidInput(folder.string() + ": no such folder");
   report::ReportContent content;
   content.title = fs::weakly_canonical(folder).filename().string();

@@ -11,7 +11,6 @@
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/SliceStack.h"
 #include "MaskBorder.h"
-#include "References.h"
 #include "ReportParts.h"
 #include "StandardViews.h"
 
@@ -301,8 +300,7 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
        std::move(doubted.outlines)});
 }
 
-void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all,
-                           const FolderReportOptions& options) {
+void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
   for (const Hemisphere& h : all) {
     const auto map = mapNamed(h.step->folder / "thickness.shape.gii", h.pial.vertexCount());
     if (!map) continue;
@@ -310,14 +308,12 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
     for (const double t : map->values) {
       if (t > 0) ribbon.push_back(t);
     }
-    report::ChartText words{"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
-                            "thickness [mm]", "share of vertices"};
-    if (auto reference = thicknessReference(options.references, *h.step)) {
-      words.behind = std::move(reference->values);
-      words.behindName = std::move(reference->name);
-    }
     results.content().charts.push_back(
-        {"", report::histogramSvg(asVector(ribbon), words), kThicknessCharts});
+        {"",
+         report::histogramSvg(asVector(ribbon),
+                              {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
+                               "thickness [mm]", "share of vertices"}),
+         kThicknessCharts});
   }
 }
 
@@ -367,7 +363,7 @@ void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
   for (std::size_t h = 0; h < all.size(); ++h) {
     addGiven(results.content().evolutions[h], all[h].side, maps);
   }
-  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
+  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all); });
 }
 
 }  // namespace explica::pipeline

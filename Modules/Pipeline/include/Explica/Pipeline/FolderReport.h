@@ -19,8 +19,6 @@ struct FolderReportOptions {
   /// Files of vertex data to show on every surface that they fit; not described below, for they
   /// are inputs.
   std::vector<std::string> maps = {};
-  /// Folders of other people's results, whose thickness is drawn behind this one's; inputs, too.
-  std::vector<std::string> references = {};
 };
 
 template <class Visitor>
