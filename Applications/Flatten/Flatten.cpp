@@ -87,15 +87,13 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .options("Reading", s.reading)
       .inputOption("reference", FileKind::Surface,
                    "surface with the same vertices whose areas and lengths count", s.reference)
-      .option("Region",
-              Field{"cuts", "",
-                    "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; "
-                    "auto: cuts are found; template: those of --template"},
+      .category("Region")
+      .option("cuts",
+              "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; "
+              "auto: cuts are found; template: those of --template",
               s.cuts)
-      .option("Region", Field{"template", "", "whose cuts they are, as of register"},
-              s.templateName)
-      .option("Region", Field{"cut-name", "", "only those of the template's cuts; all by default"},
-              s.cutNames)
+      .option("template", "whose cuts they are, as of register", s.templateName)
+      .option("cut-name", "only those of the template's cuts; all by default", s.cutNames)
       .inputOption("sphere", FileKind::Surface,
                    "the surface's sphere in register with the template (default: ?h.sphere.reg "
                    "beside it, or of explica run)",
@@ -109,37 +107,32 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .inputOption("label", FileKind::VertexLabel,
                    "lay flat only where this label, or one of several, is not 0", s.labels,
                    "Region")
-      .option("Region", Field{"label-key", "", "lay flat only where --label has one of these keys"},
-              s.labelKeys)
-      .option("Flattening",
-              Field{"area-tolerance", "",
-                    "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
+      .option("label-key", "lay flat only where --label has one of these keys", s.labelKeys)
+      .category("Flattening")
+      .option({"area-tolerance", "",
+               "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
               s.areaTolerance)
       .options("Flattening", s.flatten, "solver.")
       .without("solver.area-tolerance")
       .without("solver.frames")
-      .option("Flattening",
-              Field{"frames", "",
-                    "states to write on the way, evenly spaced along the way that vertices go", 0,
-                    kMostFrames},
-              s.flatten.frames)
-      .option("Flattening", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
+      .option(
+          {"frames", "", "states to write on the way, evenly spaced along the way that vertices go",
+           0, kMostFrames},
+          s.flatten.frames)
+      .option("resume", "continue the run whose outputs are in --out", s.resume)
       .reuseOutputIf(s.resume)
-      .option("Grid", Field{"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3},
-              s.grid)
-      .option("Grid",
-              Field{"depths", "",
-                    "layers from white to pial (default: 5 with white and pial surface, else 1)", 1,
-                    1000},
-              s.depths);
+      .category("Grid")
+      .option({"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3}, s.grid)
+      .option(
+          {"depths", "",
+           "layers from white to pial (default: 5 with white and pial surface, else 1)", 1, 1000},
+          s.depths);
   declareCortex(d, s.sheet, "Grid");
   declarePlace(d, s.place, "Grid");
   d.inputOption("volumes", FileKind::Volume, "volumes to resample into the grid, 3-D or 4-D",
                 s.volumes, "Grid")
       .severalWords("volumes")
-      .option("Grid", Field{"nearest", "", "the nearest voxel's value, for label volumes"},
-              s.nearest)
+      .option("nearest", "the nearest voxel's value, for label volumes", s.nearest)
       .inputOption("map", FileKind::VertexData,
                    "values on the vertices, for patch.tsv; the first colours flat.png", s.maps,
                    "Patch")

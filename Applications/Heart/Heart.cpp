@@ -53,10 +53,10 @@ void declare(Declaration& d, HeartSettings& s) {
                    s.images)
       .severalWords("image")
       .options("Labels", s.labels)
-      .option("Frames",
-              Field{"phases", "",
-                    "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
-                    "numbers counted from 0, as 0,9, which are taken for ED and ES"},
+      .category("Frames")
+      .option("phases",
+              "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
+              "numbers counted from 0, as 0,9, which are taken for ED and ES",
               s.frames)
       .options("Orientation", s.heart.orientation)
       .options("Thickness", s.heart.wall)

@@ -28,10 +28,9 @@ void declare(Declaration& d, ReportSettings& s) {
       .example("explica report colin --map sampled/bold.func.gii",
                "The same with a sampled map on the surfaces and on the opened patch")
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
-      .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
-              s.page)
-      .option("Page", Field{"out", "", "new folder to write report.html into, instead of --page"},
-              s.out)
+      .category("Page")
+      .option("page", "file to write (default: report.html in the folder)", s.page)
+      .option("out", "new folder to write report.html into, instead of --page", s.out)
       .options("Page", s.show)
       .inputOption("map", FileKind::VertexData,
                    "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "

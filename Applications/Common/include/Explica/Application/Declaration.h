@@ -121,10 +121,17 @@ class Declaration {
     return add(provenance::makeOption(field, value), "", true, true);
   }
 
+  /// The heading of help that the next options stand under.
+  Declaration& category(std::string heading) { return set(category_, std::move(heading)); }
   /// One option.
   template <class T>
-  Declaration& option(const std::string& category, const Field& field, T& value) {
-    return add(provenance::makeOption(field, value), category, false, false);
+  Declaration& option(const Field& field, T& value) {
+    return add(provenance::makeOption(field, value), category_, false, false);
+  }
+  /// One without a unit and of any value.
+  template <class T>
+  Declaration& option(std::string_view optionName, std::string_view help, T& value) {
+    return option(Field{optionName, "", help}, value);
   }
 
   /// All options of a struct that has a `describe` function (Core/Describe.h).  `prefix` goes
@@ -193,8 +200,8 @@ class Declaration {
   Declaration& reuseOutputIf(const bool& isOn) { return set(reuse, &isOn); }
   /// Which share of an inPlace() folder's work the options ask for: runs on different shares may be
   /// at work at the same time.  The name is part of a file's; empty: all of it.
-  Declaration& shareOfWork(std::function<std::string()> name) {
-    return set(share, std::move(name));
+  Declaration& shareOfWork(std::function<std::string()> nameOfShare) {
+    return set(share, std::move(nameOfShare));
   }
   /// Where to write if --out is not given.
   Declaration& defaultOut(const std::string& folder) { return set(fallbackOut, &folder); }
@@ -236,6 +243,8 @@ class Declaration {
   Parameter& get(std::string_view name);
   Declaration& add(provenance::Option option, const std::string& category, bool positional,
                    bool required, std::optional<FileKind> file = {});
+
+  std::string category_;
 };
 
 }  // namespace explica::app
