@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using provenance::Json;
 
 constexpr const char* kLockName = ".explica-lock";
-constexpr auto kHeartbeat = std::chrono::seconds(30);
 
 [[noreturn]] void cannot(const std::string& what, const fs::path& path, const std::string& cause) {
   throw EnvironmentError(path.string() + ": " + what + " (" + cause + ")");
@@ -164,7 +163,7 @@ void OutputFolder::acquireLock(const OutputRules& rules,
       }
       heartbeat_ = std::thread([this] {
         std::unique_lock<std::mutex> guard(mutex_);
-        while (!wake_.wait_for(guard, kHeartbeat, [this] { return stopping_; })) {
+        while (!wake_.wait_for(guard, std::chrono::seconds(30), [this] { return stopping_; })) {
           std::error_code ignored;
           fs::last_write_time(lock_, fs::file_time_type::clock::now(), ignored);
         }

@@ -31,11 +31,10 @@ struct Words {
 
 /// ": files are given by --left, --right" of a command that takes none by its place; else nothing.
 std::string optionsThatTakeFiles(const Declaration& declaration) {
-  constexpr std::size_t kNamed = 3;
   std::vector<std::string> names;
   for (const Parameter& p : declaration.parameters) {
     if (p.positional) return {};
-    if (p.file && names.size() < kNamed) names.push_back("--" + p.option.name);
+    if (p.file && names.size() < 3) names.push_back("--" + p.option.name);
   }
   return names.empty() ? "" : ": files are given by " + joined(names, ", ");
 }

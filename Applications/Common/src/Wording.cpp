@@ -83,14 +83,13 @@ std::string rightColumn(const Parameter& parameter) {
 
 void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
           std::size_t column) {
-  constexpr std::size_t kWidth = 96;  // columns of help
   std::istringstream words(text);
   std::string word;
   std::size_t at = column;
   bool first = true;
   while (words >> word) {
     // Markdown takes a line that begins with an operator for an item of a list.
-    if (!first && word.size() > 1 && at + 1 + word.size() > kWidth) {
+    if (!first && word.size() > 1 && at + 1 + word.size() > 96) {
       out << '\n' << std::string(indent, ' ');
       at = indent;
     } else if (!first) {

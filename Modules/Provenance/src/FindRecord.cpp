@@ -39,12 +39,11 @@ class Remembered {
     if (!stamp) return nullptr;
     const auto at = made_.find(path.native());
     if (at != made_.end() && at->second.first == *stamp) return &at->second.second;
-    if (at == made_.end() && made_.size() >= kMost) made_.clear();
+    if (at == made_.end() && made_.size() >= 16) made_.clear();
     return &(made_[path.native()] = {*stamp, make(path)}).second;
   }
 
  private:
-  static constexpr std::size_t kMost = 16;
   std::map<std::string, std::pair<Stamp, Made>> made_;
 };
 

@@ -124,8 +124,7 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
   evolution.shapes.push_back({"flat", flatInPlace(*patch, sight)});
   evolution.region.resize(patch->vertices.size());
   std::iota(evolution.region.begin(), evolution.region.end(), 0);
-  constexpr double kFar = 1e5;  // mm
-  evolution.viewpoint = evolution.mesh.positions.colwise().mean().transpose() - kFar * sight;
+  evolution.viewpoint = evolution.mesh.positions.colwise().mean().transpose() - 1e5 * sight;
   for (const GivenMap& map : maps) {
     const Eigen::VectorXd part = map.values(patch->vertices);
     evolution.maps.push_back({part, report::scaleFor(part, map.name, map.unit)});
@@ -191,8 +190,7 @@ void playFrames(ResultFolder& results, const StepFolder& step) {
   report::Evolution evolution = report::evolutionOf(frames.meshes);
   evolution.frameTitles = frames.titles;
   addMaps(evolution, step.folder / "distortion.shape.gii");
-  constexpr double kFarAbove = 1e5;  // mm
-  evolution.viewpoint = Point(0, 0, kFarAbove);
+  evolution.viewpoint = Point(0, 0, 1e5);
   for (std::int32_t v : evolution.mesh.faces.reshaped()) evolution.region.push_back(v);
   std::ranges::sort(evolution.region);
   evolution.region.erase(std::unique(evolution.region.begin(), evolution.region.end()),

@@ -15,8 +15,6 @@ namespace explica::pipeline {
 namespace {
 
 constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
-constexpr int kTileWidth = 300;                                      // pixels, about
-constexpr int kMostTiles = 12;  // if there are more depths, so many evenly among them
 
 /// A volume of the grid: mean over its frames where it has several.
 struct Values {
@@ -77,8 +75,9 @@ void showStack(ResultFolder& results, const std::filesystem::path& file, const s
     return views.scale ? (*views.scale)(value)
                        : report::colourOfLabel(static_cast<Label>(std::lround(value)));
   };
-  const int zoom = std::max(1, (kTileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
-  const int depths = grid.size[2], shown = std::min(depths, kMostTiles);
+  const int zoom =
+      std::max(1, (300 + grid.size[0] / 2) / std::max(1, grid.size[0]));  // pixels a tile
+  const int depths = grid.size[2], shown = std::min(depths, 12);
   for (int n = 0; n < shown; ++n) {
     const int k = shown < 2 ? 0 : n * (depths - 1) / (shown - 1);
     const double depth = depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1);

@@ -156,10 +156,9 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
 
 std::string versionOf(const StepFolder& step) {
   if (!step.record.contains("software")) return {};
-  constexpr std::size_t kShort = 10;  // characters of a commit that tell it from others
   const Json& software = step.record["software"];
   return "explica " + software.value("version", "") + ", commit " +
-         software.value("commit", "").substr(0, kShort);
+         software.value("commit", "").substr(0, 10);
 }
 
 report::ReportContent collectReport(const fs::path& folder, const FolderReportOptions& options,

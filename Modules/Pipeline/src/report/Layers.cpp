@@ -13,8 +13,7 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr int kShells = 5;              // of equal depth, where no layers were asked for
-constexpr std::size_t kMostCharts = 6;  // histograms of layers
+constexpr int kShells = 5;  // of equal depth, where no layers were asked for
 
 Volume<float> readMap(const StepFolder& step, const char* file) {
   return io::readScalars(step.folder / file, {.allowNonFinite = true, .allowAllZero = true}).volume;
@@ -40,7 +39,7 @@ void chartLayers(ResultFolder& results, const StepFolder& step, const Volume<Lab
   for (std::size_t v = 0; v < layers.size(); ++v) {
     if (layers[v] > 0 && thickness[v] > 0) values[layers[v]].push_back(thickness[v]);
   }
-  if (values.size() > kMostCharts) return;
+  if (values.size() > 6) return;
   std::vector<double> all;
   for (const auto& [layer, in] : values) all.insert(all.end(), in.begin(), in.end());
   for (const auto& [layer, in] : values) {

@@ -13,11 +13,7 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr std::size_t kMostRegions = 11;                       // with a chart of their own
-constexpr std::size_t kMostRows = 80;                          // of a table
-constexpr std::size_t kMostCourses = 5;                        // depths over time in one chart
-constexpr const char* kDepthAxis = "depth (0 white, 1 pial)";  // in words
-constexpr const char* kAll = "all";                            // the row of all regions together
+constexpr const char* kAll = "all";  // the row of all regions together
 
 /// Means over a region at one depth, frame by frame.
 struct AtDepth {
@@ -121,7 +117,7 @@ void chartProfiles(ResultFolder& results, const VolumeProfiles& profiles) {
   const DepthProfile* whole = profiles.all();
   std::vector<report::Series> lines;
   if (whole) lines.push_back(seriesOf(*whole, "all"));
-  for (const DepthProfile* region : profiles.largest(kMostRegions)) {
+  for (const DepthProfile* region : profiles.largest(11)) {
     lines.push_back(seriesOf(*region, region->region));
   }
   const auto range = report::rangeOf(lines);
@@ -134,7 +130,8 @@ void chartProfiles(ResultFolder& results, const VolumeProfiles& profiles) {
     if (!isAll && whole) shown.push_back(all);
     results.content().charts.push_back(
         {isAll ? kProfilePlace : "",
-         report::curvesSvg(shown, {title, kDepthAxis, "mean \u00b1 SD", false, {}, range}),
+         report::curvesSvg(shown,
+                           {title, "depth (0 white, 1 pial)", "mean \u00b1 SD", false, {}, range}),
          profiles.volume + " over the depth of the cortex"});
   }
 }
@@ -146,7 +143,7 @@ void chartCourse(ResultFolder& results, const VolumeProfiles& profiles) {
   const auto& depths = whole->depths;
   if (depths.begin()->second.mean.size() < 2) return;
   std::vector<report::Series> lines;
-  const std::size_t count = std::min(depths.size(), kMostCourses);
+  const std::size_t count = std::min(depths.size(), std::size_t{5});
   for (std::size_t n = 0; n < count; ++n) {
     const auto at = std::next(
         depths.begin(),
@@ -180,7 +177,7 @@ void tabulate(ResultFolder& results, const VolumeProfiles& profiles) {
                             {}};
   for (const double depth : shown) table.columns.push_back("depth " + readable(depth));
   for (const DepthProfile& profile : profiles.regions) {
-    if (table.rows.size() >= kMostRows) break;
+    if (table.rows.size() >= 80) break;
     std::vector<std::string> row = {profile.region, readable(profile.count)};
     for (const double depth : shown) {
       const auto at = profile.depths.find(depth);

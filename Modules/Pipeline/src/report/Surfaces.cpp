@@ -285,11 +285,9 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
                                        "The outlines must follow the borders of the grey ribbon.",
                                        report::makeMosaic(volume, outlines, mosaic)});
   if (places.empty()) return;
-  constexpr double kWidth = 36;  // mm
   report::MosaicOptions close = mosaic;
   close.tileHeight = 260;
-  report::SliceMosaic doubted =
-      report::makeCloseUps(volume, surfaces, {places.front()}, kWidth, close);
+  report::SliceMosaic doubted = report::makeCloseUps(volume, surfaces, {places.front()}, 36, close);
   results.content().glance.push_back(
       {kOutlinePlace,
        "First of " + std::to_string(places.size()) + " places to judge",
