@@ -3,7 +3,6 @@
 
 #include "Explica/Application/Descriptors.h"
 #include "Explica/Application/Command.h"
-#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 
 namespace explica::app {
@@ -24,8 +23,8 @@ void declare(Declaration& d, DescriptorsSettings&) {
 
 Termination run(Context& context, const DescriptorsSettings&) {
   for (const Command& command : allCommands()) {
-    const std::string file = "man/explica-" + replaced(command.name(), " ", "-") + ".1";
-    writeTextFile(context.output(file), manPageOf(command.begin().declaration));
+    writeTextFile(context.output("man/" + manPageName(command.name()) + ".1"),
+                  manPageOf(command.begin().declaration));
   }
   writeTextFile(context.output("man/explica.1"), overviewManPage());
   writeTextFile(context.output("completion/explica.bash"), bashCompletion());

@@ -9,6 +9,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Application/TimeKept.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Flattening/State.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -16,7 +17,6 @@
 #include "Stack.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace explica::app {
 namespace {
@@ -151,12 +151,6 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
   declareFlatOutputs(d);
 }
 
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 void warnOf(Context& context, const flattening::Disc& disc, const flattening::FlatMap& map) {
   if (disc.trimmedFaces > 0) {
     context.warn(std::to_string(disc.trimmedFaces) +
@@ -201,7 +195,7 @@ struct Made {
 
 Made make(Context& context, const FlattenSettings& s, const Subject& subject, flattening::Disc disc,
           const flattening::FlattenOptions& options) {
-  const auto begin = Clock::now();
+  const Stopwatch seconds;
   std::optional<flattening::Checkpoint> from;
   if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kFlatteningState);
   Made made;
@@ -218,7 +212,7 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
     auto step = context.step("cut");
     disc = openedAlongTemplate(context, subject.reference, disc, *subject.cuts);
   }
-  made.secondsCut = secondsSince(begin);
+  made.secondsCut = seconds();
   auto step = context.step("flatten");
   try {
     made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
@@ -236,14 +230,14 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
 }
 
 Termination run(Context& context, const FlattenSettings& s) {
-  const auto begin = Clock::now();
+  const Stopwatch seconds;
   const Subject subject = subjectOf(context, s);
   const std::optional<Cortex> surfaces = checkBeside(context, s, subject);
   flattening::Disc whole = flattening::discOf(subject.reference.mesh, subject.faces);
   sayHowRead(context, subject.reference.origin);
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
-  const double read = secondsSince(begin);
+  const double read = seconds();
   // What comes after cuts and map, in times of the start, which reads one surface.
   constexpr double kRest = 2, kEachFrame = 0.5;
   const TimeKept rest(read * (kRest + kEachFrame * options.frames));
@@ -253,7 +247,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   if (!made.hasMap()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
-  const double flattened = secondsSince(begin);
+  const double flattened = seconds();
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
@@ -275,7 +269,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);
   context.result("seconds_flatten", flattened - read - made.secondsCut);
-  context.result("seconds_output", secondsSince(begin) - flattened);
+  context.result("seconds_output", seconds() - flattened);
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
   return folded ? Termination::Stalled : termination;
 }

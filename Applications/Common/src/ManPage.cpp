@@ -3,7 +3,6 @@
 
 #include "Explica/Application/Command.h"
 #include "Explica/Application/Descriptors.h"
-#include "Explica/Core/Text.h"
 #include "Explica/Provenance/Software.h"
 #include "Wording.h"
 
@@ -13,10 +12,6 @@ namespace {
 std::string roff(const std::string& text) {
   const bool isRequest = text.starts_with('.') || text.starts_with('\'');
   return (isRequest ? "\\&" : "") + replaced(replaced(text, "\\", "\\e"), "-", "\\-");
-}
-
-std::string pageName(const std::string& command) {
-  return "explica-" + replaced(command, " ", "-");
 }
 
 std::string beginning(const std::string& name, const std::string& synopsis) {
@@ -38,10 +33,14 @@ std::string textOf(const Section& section) {
 
 }  // namespace
 
+std::string manPageName(const std::string& command) {
+  return "explica-" + replaced(command, " ", "-");
+}
+
 std::string manPageOf(const Declaration& d) {
   CommonOptions common;
-  std::string text =
-      beginning(pageName(d.name), d.synopsisText) + ".SH SYNOPSIS\n.B " + roff(usageLine(d)) + "\n";
+  std::string text = beginning(manPageName(d.name), d.synopsisText) + ".SH SYNOPSIS\n.B " +
+                     roff(usageLine(d)) + "\n";
   if (!d.descriptionText.empty()) text += ".SH DESCRIPTION\n" + roff(d.descriptionText) + "\n";
   for (const Section& section : sectionsOf(allParameters(d, common))) text += textOf(section);
   Section files{"Files", {}}, examples{"Examples", {}};
@@ -59,7 +58,7 @@ std::string manPageOf(const Declaration& d) {
 std::string overviewManPage() {
   Section commands{"Commands", {}};
   for (const Command& command : allCommands()) {
-    commands.rows.emplace_back(pageName(command.name()) + "(1)",
+    commands.rows.emplace_back(manPageName(command.name()) + "(1)",
                                command.begin().declaration.synopsisText);
   }
   return beginning("explica",

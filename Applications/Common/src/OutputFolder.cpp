@@ -40,20 +40,17 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
   try {
     const Json earlier = provenance::readRecord(record);
     fs::remove(record);
-    const Json& varying = earlier["execution"]["varying_outputs"];
-    for (const Json* outputs : {&earlier["outputs"], &varying}) {
-      for (const Json& output : *outputs) {
-        const std::string name = output["path"];
-        const auto own = provenance::ownFile(folder, name);
-        if (!own) continue;
-        const fs::path& path = *own;
-        if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
-        const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
-                          provenance::digestOf(path).sha256 == output["sha256"];
-        if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
-        fs::remove(path);
-        emptied.insert(path.parent_path());
-      }
+    for (const Json& output : provenance::hashedOutputs(earlier)) {
+      const std::string name = output["path"];
+      const auto own = provenance::ownFile(folder, name);
+      if (!own) continue;
+      const fs::path& path = *own;
+      if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
+      const bool ours = fs::is_regular_file(path, ignored) &&
+                        provenance::digestOf(path).sha256 == output["sha256"];
+      if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
+      fs::remove(path);
+      emptied.insert(path.parent_path());
     }
   } catch (const IOError&) {
     fs::remove(record, ignored);  // damaged: it must not describe the new files

@@ -130,6 +130,13 @@ std::string usageLine(const Declaration& d) {
   return line + " [options]";
 }
 
+std::string replaced(std::string text, std::string_view from, std::string_view by) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += by.size()) {
+    text.replace(at, from.size(), by);
+  }
+  return text;
+}
+
 std::string upperCase(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return text;

@@ -25,6 +25,9 @@ namespace explica::app {
 /// The text with its ASCII letters in upper case.
 [[nodiscard]] std::string upperCase(std::string text);
 
+/// The text with every `from` in it put as `by`.
+[[nodiscard]] std::string replaced(std::string text, std::string_view from, std::string_view by);
+
 /// Two columns under a heading.
 struct Section {
   std::string title;

@@ -36,13 +36,6 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-std::string replaced(std::string text, std::string_view from, std::string_view by) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += by.size()) {
-    text.replace(at, from.size(), by);
-  }
-  return text;
-}
-
 std::vector<std::string> cellsOf(std::string_view row, char separator) {
   std::vector<std::string> cells;
   for (std::size_t begin = 0; begin < row.size();) {

@@ -63,13 +63,9 @@ Listing listingOf(const fs::path& path) {
   } catch (const Error&) {
     return {};  // another program's provenance.json, or a damaged one
   }
-  const Json& record = listing.record;
-  for (const Json* outputs : {&record["outputs"], &record["execution"]["varying_outputs"]}) {
-    for (const Json& output : *outputs) {
-      if (!output.contains("sha256")) continue;
-      listing.hashOf.emplace(output["path"], output["sha256"]);
-      listing.hashes.insert(output["sha256"]);
-    }
+  for (const Json& output : hashedOutputs(listing.record)) {
+    listing.hashOf.emplace(output["path"], output["sha256"]);
+    listing.hashes.insert(output["sha256"]);
   }
   return listing;
 }

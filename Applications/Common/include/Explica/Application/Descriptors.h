@@ -13,6 +13,8 @@ namespace explica::app {
 [[nodiscard]] std::string bashCompletion();
 [[nodiscard]] std::string zshCompletion();
 
+/// "explica-study-group".
+[[nodiscard]] std::string manPageName(const std::string& command);
 /// Manual page, section 1, in roff.
 [[nodiscard]] std::string manPageOf(const Declaration& declaration);
 

@@ -19,9 +19,6 @@ namespace explica {
 /// The text with its ASCII letters in lower case.
 [[nodiscard]] std::string lowerCase(std::string text);
 
-/// The text with every `from` in it put as `by`.
-[[nodiscard]] std::string replaced(std::string text, std::string_view from, std::string_view by);
-
 /// Words with a separator between them; `word` gives each item's.
 template <class Items, class Word = std::identity>
 [[nodiscard]] std::string joined(const Items& items, std::string_view separator = ", ",
