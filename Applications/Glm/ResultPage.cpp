@@ -7,16 +7,13 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
-#include "Plots.h"
+#include "PlacePlot.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace explica::app {
 namespace {
-
-constexpr std::size_t kPoints = 6000;  // people in all plots of a contrast
-constexpr std::size_t kPlots = 6;      // peaks of a contrast that are plotted
 
 TriangleMesh meshOf(const Observations& o, const MapSide& h) {
   const Faces& all = o.surface->mesh.faces;
@@ -75,8 +72,8 @@ void addMaps(const Observations& o, const GlmResults& r, report::ReportContent& 
   }
 }
 
-/// Places to plot: peaks of the largest clusters, or the regions of the smallest P.
-std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& r, std::size_t k) {
+/// Places to name: peaks of the largest clusters, or the regions of the smallest P.
+std::vector<Eigen::Index> placesToName(const Observations& o, const GlmResults& r, std::size_t k) {
   std::vector<Eigen::Index> places;
   if (o.surface) {
     for (const auto& c : r.inferences[k].clusters) places.push_back(c.cluster.peak);
@@ -88,22 +85,16 @@ std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& 
       return r.maps.contrasts[k].p[a] < r.maps.contrasts[k].p[b];
     });
   }
-  const std::size_t most = std::clamp<std::size_t>(kPoints / o.people.size(), 1, kPlots);
-  places.resize(std::min(places.size(), most));
+  places.resize(std::min<std::size_t>(places.size(), 6));
   return places;
 }
 
-void addPlots(const Observations& o, const GlmResults& r, const Eigen::MatrixXd* values,
-              report::ReportContent& page) {
-  if (values == nullptr) return;
+std::vector<NamedPlace> namedPlaces(const Observations& o, const GlmResults& r) {
+  std::vector<NamedPlace> named;
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
-    const Axis axis = axisOf(o, r, r.contrasts[k]);
-    for (const Eigen::Index v : placesToPlot(o, r, k)) {
-      page.charts.push_back({fileName(r.contrasts[k].name) + "-at-" + std::to_string(v),
-                             scatterSvg(o, axis, values->col(v), nameOfPlace(o, v)),
-                             r.contrasts[k].name + ": each person at the peaks"});
-    }
+    for (const Eigen::Index v : placesToName(o, r, k)) named.push_back({k, v});
   }
+  return named;
 }
 
 report::ReportTable clustersOf(const Observations& o, const GlmResults& r, std::size_t k) {
@@ -133,7 +124,7 @@ report::ReportTable regionsOf(const Observations& o, const GlmResults& r, std::s
   table.title = r.contrasts[k].name + ": regions of the smallest P";
   table.caption = "All regions are in regions.tsv.";
   table.columns = {"region", "effect", "standard error", "t or F", "P", "q"};
-  for (const Eigen::Index v : placesToPlot(o, r, k)) {
+  for (const Eigen::Index v : placesToName(o, r, k)) {
     const auto& m = r.maps.contrasts[k];
     table.rows.push_back({regionOf(o, v), numberText(m.effect[v], 4), numberText(m.error[v], 3),
                           numberText(m.statistic[v], 4), numberText(m.p[v], 3),
@@ -199,16 +190,17 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
   if (o.surface) addMaps(o, r, page);
-  addPlots(o, r, values, page);
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     page.tables.push_back(o.surface ? clustersOf(o, r, k) : regionsOf(o, r, k));
   }
   std::string html = report::reportPage(page);
-  // Beside the surface that turns, which says where it is clicked.
-  const std::size_t view = html.find("<section id=\"view3d\"");
+  if (values == nullptr) return html;
+  // Beside the surface that turns, which says where it is clicked, or the numbers.
   const std::string ending = "</section>";
-  if (values == nullptr || !o.surface || view == std::string::npos) return html;
-  return html.insert(html.find(ending, view) + ending.size(), placePlot(o, r, *values));
+  const std::size_t beside =
+      html.find(o.surface ? "<section id=\"view3d\"" : "<section id='numbers'");
+  return html.insert(html.find(ending, beside) + ending.size(),
+                     placePlot(o, r, *values, namedPlaces(o, r)));
 }
 
 }  // namespace explica::app
