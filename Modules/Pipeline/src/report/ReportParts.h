@@ -13,7 +13,6 @@ inline constexpr const char* kTissuePlace = "tissues";
 inline constexpr const char* kOutlinePlace = "surfaces-on-image";
 inline constexpr const char* kCrossingPlace = "crossing-places";
 inline constexpr const char* kLayerPlace = "layers";
-inline constexpr const char* kThicknessPlace = "thickness-maps";
 inline constexpr const char* kPatchPlace = "view3d";
 inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
@@ -41,8 +40,8 @@ void findNumbers(ResultFolder& results);
 /// Slices of tissue classes, or of the labels that a surface was made from.
 void showTissues(ResultFolder& results, const FolderReportOptions& options);
 
-/// White and pial outlines on the image, thickness from all sides, and the hemispheres in all
-/// their shapes with their maps for the view in three dimensions.
+/// White and pial outlines on the image, and the hemispheres in all their shapes with their maps
+/// for the view in three dimensions.
 void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                   const std::vector<GivenMap>& maps);
 
