@@ -194,10 +194,7 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
 std::optional<report::Picture> thumbnailOf(const report::ReportContent& content) {
   const report::Picture* large = nullptr;
   for (const report::ReportGlance& glance : content.glance) {
-    if (!glance.views.empty() && large == nullptr) large = &glance.views.front().second;
-  }
-  for (const report::ReportViews& views : content.views) {
-    if (views.id == kPatchViewsPlace && !views.views.empty()) large = &views.views.back().picture;
+    if (!glance.views.empty()) large = &glance.views.back().second;
   }
   if (large == nullptr || large->width < 2 || large->height < 2) return {};
   report::Picture small(large->width / 2, large->height / 2);

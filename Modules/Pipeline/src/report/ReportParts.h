@@ -14,7 +14,6 @@ inline constexpr const char* kOutlinePlace = "surfaces-on-image";
 inline constexpr const char* kCrossingPlace = "crossing-places";
 inline constexpr const char* kLayerPlace = "layers";
 inline constexpr const char* kPatchPlace = "view3d";
-inline constexpr const char* kPatchViewsPlace = "before-after";
 inline constexpr const char* kDistortionPlace = "distortion";
 inline constexpr const char* kProfilePlace = "profiles";
 inline constexpr const char* kFlatPlace = "flat";
@@ -28,7 +27,7 @@ inline constexpr const char* kThicknessCharts = "Thickness";
 /// What a reader must know before trusting the results, the worst first.
 void flagSteps(ResultFolder& results);
 
-/// Input, date and version, and the pictures beside the verdict; after all else is collected.
+/// Input, date and version.
 void showHead(ResultFolder& results);
 
 /// "explica 0.1.0, commit 77527f6"

@@ -145,9 +145,9 @@ report::SurfacePaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount,
   return paint;
 }
 
-/// From the viewpoint and from the side, before and after to one scale, filled by the region.
-void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
-                        const std::string& side) {
+/// From the viewpoint, before and after to one scale, filled by the region: beside the verdict.
+void glanceAtPatch(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
+                   const std::string& side) {
   const std::array meshes = {unfolded.whole ? &*unfolded.whole : &unfolded.frames.meshes.front(),
                              &unfolded.frames.meshes.back()};
   const report::SurfacePaint paint = foldsOf(unfolded, meshes[0]->vertexCount(), surface);
@@ -155,37 +155,32 @@ void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const S
   report::FigureView front;
   front.towards = (centreOf(*meshes[0], unfolded.region) - *unfolded.viewpoint).normalized();
   front.focus = unfolded.region;
-  report::FigureView aside = front;
-  const Vector across = front.towards.cross(Vector(0, 0, 1));
-  aside.towards += 1.7 * (across.norm() > 1e-3 ? across.normalized() : Vector(1, 0, 0));
-  report::ReportViews views;
-  views.id = kPatchViewsPlace;
-  views.title = "The patch" + (side.empty() ? "" : " on the " + side) + " before and after";
-  views.caption =
-      std::string("From the viewpoint and from the side, to one scale, the patch's rim dark: ") +
-      (isSmooth ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
-      (unfolded.detached ? " It was unfolded alone, and is drawn apart from the surface." : "");
+  report::ReportGlance glance{
+      kPatchPlace, "Patch" + (side.empty() ? "" : " on the " + side) + " before and after",
+      std::string("From the viewpoint, the patch's rim dark: ") +
+          (isSmooth ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
+          (unfolded.detached ? " It was unfolded alone, and is drawn apart from the surface."
+                             : "") +
+          " Right: the sulci's floors face the reader, the rim joins the surroundings. Wrong: "
+          "sulci still folded, a torn or twisted rim. Then: more iterations or a smaller patch."};
+  const report::SurfacePictureOptions size{.width = 360, .height = 280};
+  std::array<report::Camera, 2> cameras;
+  double half = 0;
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    cameras[n] = report::cameraOf(*meshes[n], front, size.width, size.height);
+    half = std::max(half, cameras[n].halfHeight);
+  }
   const auto colours = report::coloursOf(paint, meshes[0]->vertexCount());
   const std::vector<std::int32_t> rim(paint.region.begin(), paint.region.end());
-  const report::SurfacePictureOptions size{.width = 360, .height = 280};
-  for (const TriangleMesh* mesh : meshes) {
-    const report::SurfaceScene scene(*mesh);
-    for (const report::FigureView* view : {&front, &aside}) {
-      report::Camera camera = report::cameraOf(*mesh, *view, size.width, size.height);
-      for (const TriangleMesh* other : meshes) {
-        camera.halfHeight = std::max(
-            camera.halfHeight, report::cameraOf(*other, *view, size.width, size.height).halfHeight);
-      }
-      views.views.push_back(
-          {std::string(mesh == meshes[0] ? "before" : "after") +
-               (view == &front ? ", from the viewpoint" : ", from the side"),
-           scene.render(camera, colours,
-                        isSmooth ? report::Filling::Smooth : report::Filling::Discrete, size,
-                        rim)});
-    }
+  const auto filling = isSmooth ? report::Filling::Smooth : report::Filling::Discrete;
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    cameras[n].halfHeight = half;
+    glance.views.emplace_back(
+        n == 0 ? "before" : "after",
+        report::SurfaceScene(*meshes[n]).render(cameras[n], colours, filling, size, rim));
   }
-  if (isSmooth) views.scale = paint.scale;
-  results.content().views.push_back(std::move(views));
+  if (isSmooth) glance.scale = paint.scale;
+  results.content().glance.push_back(std::move(glance));
 }
 
 }  // namespace
@@ -242,7 +237,7 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
   addGiven(evolution, step.side(), maps);
   if (!unfolded.region.empty() && unfolded.viewpoint) {
     results.attempt("Before and after", [&] {
-      drawBeforeAndAfter(results, unfolded, results.beside(step, "surface"), step.side());
+      glanceAtPatch(results, unfolded, results.beside(step, "surface"), step.side());
     });
   }
   evolution.title = titleOf(step.name);

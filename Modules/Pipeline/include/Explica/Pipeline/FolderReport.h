@@ -40,7 +40,7 @@ void describe(FolderReportOptions& options, Visitor&& visit) {
                                                   const Monitor& monitor = {});
 
 /// A small picture that tells one result from another at a glance: the opened patch, else the
-/// thickness from the side; none where a report shows neither.
+/// thickness from a side; none where a report shows neither.
 [[nodiscard]] std::optional<report::Picture> thumbnailOf(const report::ReportContent& content);
 
 }  // namespace explica::pipeline
