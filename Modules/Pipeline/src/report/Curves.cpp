@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
 #include "Explica/Core/EigenViews.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Pipeline/UnfoldingFolder.h"
@@ -42,10 +41,12 @@ void chartHistory(ResultFolder& results, const StepFolder& step) {
   }
 }
 
-void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, const char* id) {
+}  // namespace
+
+void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, const char* id,
+               const std::vector<std::int32_t>& region) {
   if (!step.has(file)) return;
   const auto maps = io::readVertexMaps(step.folder / file);
-  const auto region = unfoldedRegion(step.folder, maps.front().values.size());
   bool first = true;
   const auto inside = [&](const io::VertexMap& map) -> Eigen::VectorXd {
     return region.empty() ? map.values : map.values(region).eval();
@@ -72,8 +73,6 @@ void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, 
     first = false;
   }
 }
-
-}  // namespace
 
 std::string mapWords(const std::string& name) {
   for (const auto& [start, words] : {std::pair{"flux ", "facing the viewpoint (1 = directly), "},
@@ -103,9 +102,12 @@ void chartUnfolding(ResultFolder& results, const StepFolder& step) {
   if (step.has("evolution.tsv")) {
     results.attempt("Curves", [&] { chartHistory(results, step); });
   }
-  results.attempt("Visibility maps", [&] { chartMaps(results, step, "visibility.shape.gii", ""); });
-  results.attempt("Distortion maps",
-                  [&] { chartMaps(results, step, "distortion.shape.gii", kDistortionPlace); });
+  for (const auto& [file, id] : {std::pair{"visibility.shape.gii", ""},
+                                 std::pair{"distortion.shape.gii", kDistortionPlace}}) {
+    results.attempt(file, [&, file = file, id = id] {
+      chartMaps(results, step, file, id, unfoldedRegion(step.folder));
+    });
+  }
 }
 
 void chartBeat(ResultFolder& results, const StepFolder& step) {

@@ -1,8 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
 #include "Explica/IO/SurfaceFile.h"
-#include "Explica/Report/Chart.h"
 #include "Explica/Report/Evolution.h"
 #include "ReportParts.h"
 
@@ -132,43 +130,6 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
   results.content().evolutions.push_back(std::move(evolution));
 }
 
-void tabulatePatch(ResultFolder& results, const StepFolder& step) {
-  const Table read = readTable(step.folder / "patch.tsv");
-  report::ReportTable table{"",
-                            "Regions of the patch",
-                            "Areas in mm\u00b2; means and standard deviations of the maps are "
-                            "weighted by the vertices' areas.",
-                            {},
-                            {}};
-  for (const std::string& name : read.names) {
-    if (name != "key") table.columns.push_back(inWords(name));
-  }
-  for (const TableRow& row : read.rows) {
-    std::vector<std::string>& cells = table.rows.emplace_back();
-    for (const std::string& name : read.names) {
-      if (name == "key") continue;
-      const double value = numberIn(row, name);
-      const bool isNumber = &name != &read.names.front() && std::isfinite(value);
-      cells.push_back(isNumber ? readable(value) : row.at(name));
-    }
-  }
-  results.content().tables.push_back(std::move(table));
-}
-
-void chartDistortion(ResultFolder& results, const StepFolder& step) {
-  const std::vector<std::int32_t> vertices = patchVertices(step);
-  bool first = true;
-  for (const io::VertexMap& map : io::readVertexMaps(step.folder / "distortion.shape.gii")) {
-    const Eigen::VectorXd values = map.values(vertices);
-    const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
-    results.content().charts.push_back(
-        {first ? kDistortionPlace : "",
-         report::histogramSvg(values, {inWords(map.name), axis, "share of the patch's vertices"}),
-         "Distortion of the flat map"});
-    first = false;
-  }
-}
-
 void showPicture(ResultFolder& results, const StepFolder& step) {
   const std::filesystem::path file = step.folder / "flat.png";
   if (!isThere(file)) return;
@@ -206,8 +167,14 @@ void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<G
   results.attempt("The way to the map", [&] { playFrames(results, step); });
   results.attempt("The patch's shapes", [&] { showShapes(results, step, maps); });
   showFlatStacks(results, step);
-  results.attempt("Distortion maps", [&] { chartDistortion(results, step); });
-  results.attempt("Regions of the patch", [&] { tabulatePatch(results, step); });
+  results.attempt("Distortion maps", [&] {
+    chartMaps(results, step, "distortion.shape.gii", kDistortionPlace, patchVertices(step));
+  });
+  results.attempt("Regions of the patch", [&] {
+    tabulate(results, readTable(step.folder / "patch.tsv"), "Regions of the patch",
+             "Areas in mm\u00b2; means and standard deviations of the maps are weighted by the "
+             "vertices' areas.");
+  });
 }
 
 }  // namespace explica::pipeline

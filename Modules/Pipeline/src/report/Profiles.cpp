@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
 #include "Explica/Report/Chart.h"
 #include "ReportParts.h"
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "../Table.h"
 #include "Explica/Pipeline/FolderReport.h"
 #include "GivenMaps.h"
 #include "ResultFolder.h"
@@ -89,6 +90,15 @@ void chartThickness(ResultFolder& results, const StepFolder& step);
 
 /// Curves over an unfolding's iterations, and histograms of its maps.
 void chartUnfolding(ResultFolder& results, const StepFolder& step);
+
+/// Histograms of a file's maps, those of before behind those of after.
+/// @param region  vertices that count; empty: all
+void chartMaps(ResultFolder& results, const StepFolder& step, const char* file, const char* id,
+               const std::vector<std::int32_t>& region);
+
+/// A table as it is, its numbers to a few digits; of a long one the first rows.
+void tabulate(ResultFolder& results, const Table& table, const std::string& title,
+              const std::string& caption);
 
 /// Sampled maps and labels on the surface, and the table of points.
 void showSampled(ResultFolder& results, const StepFolder& step);

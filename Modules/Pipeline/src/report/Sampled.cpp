@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
 #include "Explica/Core/EigenViews.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
@@ -19,8 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostMaps = 8;     // files of maps
-constexpr std::size_t kMostPoints = 60;  // rows of the table
+constexpr std::size_t kMostMaps = 8;  // files of maps
 
 /// The surface half way between white and pial.
 std::optional<report::Evolution> middleOf(const StepFolder& step) {
@@ -101,30 +99,14 @@ std::vector<std::pair<fs::path, std::string>> mapFiles(const StepFolder& step) {
   return files;
 }
 
-void tabulatePoints(ResultFolder& results, const StepFolder& step) {
-  const Table read = readTable(step.folder / "points.tsv");
-  report::ReportTable table{
-      "",
-      "Points",
-      "Nearest vertex, depth (0 white, 1 pial) and distance in mm from the column.",
-      read.names,
-      {}};
-  for (std::size_t n = 0; n < std::min(read.rows.size(), kMostPoints); ++n) {
-    std::vector<std::string>& cells = table.rows.emplace_back();
-    for (const std::string& name : read.names) cells.push_back(read.rows[n].at(name));
-  }
-  if (read.rows.size() > kMostPoints) {
-    table.caption += " The first " + std::to_string(kMostPoints) + " of " +
-                     std::to_string(read.rows.size()) + "; points.tsv has all.";
-  }
-  results.content().tables.push_back(std::move(table));
-}
-
 }  // namespace
 
 void showSampled(ResultFolder& results, const StepFolder& step) {
   if (step.has("points.tsv")) {
-    results.attempt("Points", [&] { tabulatePoints(results, step); });
+    results.attempt("Points", [&] {
+      tabulate(results, readTable(step.folder / "points.tsv"), "Points",
+               "Nearest vertex, depth (0 white, 1 pial) and distance in mm from the column.");
+    });
   }
   auto middle = middleOf(step);
   if (!middle) return;
