@@ -24,7 +24,8 @@ constexpr std::size_t kMostMaps = 8;  // files of maps
 std::optional<report::Evolution> middleOf(const StepFolder& step) {
   const auto white = inputOf(step, "white"), pial = inputOf(step, "pial");
   if (!white || !pial || !isThere(*white) || !isThere(*pial)) return {};
-  report::Evolution middle{.title = "middle surface" + step.sideWords()};
+  report::Evolution middle;
+  middle.title = "middle surface" + step.sideWords();
   middle.mesh = io::readSurface(*white).mesh;
   const Positions outer = io::readSurface(*pial).mesh.positions;
   if (outer.rows() != middle.mesh.positions.rows()) return {};
