@@ -121,7 +121,7 @@ void declare(Declaration& d, BidsSettings& s) {
     d.include(s.run.declaration, "");
     for (const char* ours : {"atlas", "hemisphere", "resume", "kind"}) d.without(ours);
   }
-  d.option("hemisphere", "hemispheres to do", s.hemispheres);
+  d.category("Study").option("hemisphere", "hemispheres to do", s.hemispheres);
 }
 
 /// Both hemispheres of labels without sides would be the same volume, twice.
