@@ -137,6 +137,7 @@ Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& v
   std::string digits;
   int first = 0;
   for (const MapSide& side : o.hemispheres) {
+    if (!o.surface) break;  // nothing to click
     const auto places = placesOf(side.count, most);
     const auto vertices = o.surface->mesh.positions.middleRows(side.first, side.count);
     views[side.structure] = {{"first", first}, {"place", nearestPlaces(vertices, places)}};
