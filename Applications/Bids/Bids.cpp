@@ -88,16 +88,15 @@ void declare(Declaration& d, BidsSettings& s) {
              s.dataset)
       .argument(Field{"OUT_DIR", "", "folder of the derivative data set"}, s.out)
       .argument(Field{"LEVEL", "", "participant or group"}, s.level)
-      .option("Study", Field{"participant-label", "", "participants to do, with or without sub-"},
-              s.participants)
+      .category("Study")
+      .option("participant-label", "participants to do, with or without sub-", s.participants)
       .severalWords("participant-label")
       .inputOption(
           "registrations", FileKind::Folder,
           R"(an earlier OUT_DIR, of the same T1s: each one's template is placed as it was there (runs/*/segment/to_template.h5), where it is; how it fits is checked as ever)",
           s.registrations, "Study")
-      .option("Study", keepField(), s.keep)
-      .option("Study", Field{"skip-bids-validator", "", "accepted; no validator is run"},
-              s.skipValidator)
+      .option(keepField(), s.keep)
+      .option("skip-bids-validator", "accepted; no validator is run", s.skipValidator)
       .defaultOut(s.out)
       .reuseOutputIf(s.reuse)
       .inPlace()
@@ -122,7 +121,7 @@ void declare(Declaration& d, BidsSettings& s) {
     d.include(s.run.declaration, "");
     for (const char* ours : {"atlas", "hemisphere", "resume", "kind"}) d.without(ours);
   }
-  d.option("Study", Field{"hemisphere", "", "hemispheres to do"}, s.hemispheres);
+  d.category("Study").option("hemisphere", "hemispheres to do", s.hemispheres);
 }
 
 /// Both hemispheres of labels without sides would be the same volume, twice.

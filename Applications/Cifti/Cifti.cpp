@@ -40,8 +40,9 @@ void declare(Declaration& d, CiftiSettings& s) {
       .ofSide("left-cortex", Hemisphere::Left)
       .ofSide("right", Hemisphere::Right)
       .ofSide("right-cortex", Hemisphere::Right)
-      .option("Output", Field{"name", "", "name of the file, without its ending"}, s.name)
-      .option("Output", Field{"seconds", "s", "time between maps that are a series"}, s.seconds)
+      .category("Output")
+      .option("name", "name of the file, without its ending", s.name)
+      .option({"seconds", "s", "time between maps that are a series"}, s.seconds)
       .output("*.dscalar.nii", FileKind::Any, "maps of both hemispheres")
       .output("*.dtseries.nii", FileKind::Any, "with --seconds: a series of both hemispheres")
       .output("*.dlabel.nii", FileKind::Any, "labels of both hemispheres with names and colours");

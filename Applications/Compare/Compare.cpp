@@ -40,17 +40,15 @@ A run that is stopped holds the surfaces that it has measured, the first at any 
       .options("Reading", s.reading)
       .inputOption("label", FileKind::VertexLabel, "compare only where this label is not 0",
                    s.label, "Region")
-      .option("Region", Field{"label-key", "", "compare only where --label has this key"},
-              s.labelKey)
+      .category("Region")
+      .option("label-key", "compare only where --label has this key", s.labelKey)
       .needs({"label-key"}, {"label"})
-      .option("Distances",
-              Field{"pairs", "", "pairs of vertices in each of the two groups", 0, 1e8},
+      .category("Distances")
+      .option({"pairs", "", "pairs of vertices in each of the two groups", 0, 1e8},
               s.distances.pairs)
-      .option("Distances",
-              Field{"sources", "", "vertices from which the pairs are counted", 1, 1e6},
+      .option({"sources", "", "vertices from which the pairs are counted", 1, 1e6},
               s.distances.sources)
-      .option("Distances", Field{"local-limit", "mm", "pairs nearer than this are 'local'"},
-              s.distances.localLimit)
+      .option({"local-limit", "mm", "pairs nearer than this are 'local'"}, s.distances.localLimit)
       .output("comparison.tsv", FileKind::Table, "one row a surface")
       .output("comparison-*.png", FileKind::Picture, "each surface, coloured by its area ratio")
       .results<unfolding::Comparison>();

@@ -4,9 +4,6 @@
 #include "Explica/Application/Descriptors.h"
 #include "Explica/Application/Command.h"
 #include "Explica/Core/WholeFile.h"
-#include "Explica/Provenance/Software.h"
-
-#include <algorithm>
 
 namespace explica::app {
 namespace {
@@ -25,17 +22,14 @@ void declare(Declaration& d, DescriptorsSettings&) {
 }
 
 Termination run(Context& context, const DescriptorsSettings&) {
-  const std::string& version = provenance::software().version;
-  const Json commands = describeAllCommands();
-  for (const Json& command : commands) {
-    std::string name = "explica-" + command["command"].get<std::string>();
-    std::replace(name.begin(), name.end(), ' ', '-');
-    writeTextFile(context.output("man/" + name + ".1"), manPageOf(command, version));
+  for (const Command& command : allCommands()) {
+    writeTextFile(context.output("man/" + manPageName(command.name()) + ".1"),
+                  manPageOf(command.begin().declaration));
   }
-  writeTextFile(context.output("man/explica.1"), overviewManPageOf(commands, version));
-  writeTextFile(context.output("completion/explica.bash"), bashCompletionOf(commands));
-  writeTextFile(context.output("completion/_explica"), zshCompletionOf(commands));
-  context.result("commands", commands.size());
+  writeTextFile(context.output("man/explica.1"), overviewManPage());
+  writeTextFile(context.output("completion/explica.bash"), bashCompletion());
+  writeTextFile(context.output("completion/_explica"), zshCompletion());
+  context.result("commands", allCommands().size());
   return Termination::NotRun;
 }
 

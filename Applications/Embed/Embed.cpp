@@ -47,15 +47,16 @@ void declare(Declaration& d, EmbedSettings& s) {
                "The outer contour of the heart muscle")
       .input("TARGET", FileKind::Any, "polygons, label images, surfaces or coefficients.json",
              s.targets)
-      .option("Shape", Field{"fit", "", "fit a single target (default for one target)"}, s.fit)
-      .option("Shape", Field{"average", "", "mean of the targets (default for several)"}, s.average)
-      .option("Shape", Field{"combine", "", "weights of the targets, one each"}, s.weights);
+      .category("Shape")
+      .option("fit", "fit a single target (default for one target)", s.fit)
+      .option("average", "mean of the targets (default for several)", s.average)
+      .option("combine", "weights of the targets, one each", s.weights);
   declarePolygonReading(d, s.reading);
   d.options("Annulus", s.annulus)
       .options("Fit", s.fitting)
-      .option("Output", Field{"cells", "", "voxels per side, for drawing the shape", 16, 1024},
-              s.grid)
-      .option("Output", Field{"frames", "", "states of the first target's fit", 0, 1000}, s.frames)
+      .category("Output")
+      .option({"cells", "", "voxels per side, for drawing the shape", 16, 1024}, s.grid)
+      .option({"frames", "", "states of the first target's fit", 0, 1000}, s.frames)
       .output("coefficients.json", FileKind::JsonFile, "the shape's coefficients")
       .output("field.nii.gz", FileKind::Volume, "in 3D: u on the grid; the shape is its 1/2 level")
       .output("shape.csv", FileKind::Polygon, "in 2D: the shape")

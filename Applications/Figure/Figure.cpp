@@ -63,14 +63,13 @@ void declare(Declaration& d, FigureSettings& s) {
              "surfaces, flat maps, per-vertex maps and annotations of one or both hemispheres",
              s.files)
       .oneByOne("FILE")
-      .option("Picture", Field{"views", "", "sides of each surface"}, s.views)
-      .option("Picture",
-              Field{"layout", "",
-                    "a column a surface and a row a view, all in one row, or a row a surface"},
+      .category("Picture")
+      .option("views", "sides of each surface", s.views)
+      .option("layout", "a column a surface and a row a view, all in one row, or a row a surface",
               s.layout)
-      .option("Picture", Field{"size", "pixels", "width of the figure", 100, 20000}, s.size)
-      .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
-      .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
+      .option({"size", "pixels", "width of the figure", 100, 20000}, s.size)
+      .option("colours", "colour map (default: by the values)", s.colours)
+      .option("range", "values of the first and last colour", s.range)
       .options("Reading", s.reading)
       .output("figure.png", FileKind::Picture, "the figure")
       .output("figure.svg", FileKind::Picture, "the same in layers");

@@ -9,6 +9,7 @@
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Application/TimeKept.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Flattening/State.h"
 #include "Explica/Geometry/MeshMeasures.h"
@@ -16,7 +17,6 @@
 #include "Stack.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace explica::app {
 namespace {
@@ -87,15 +87,13 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .options("Reading", s.reading)
       .inputOption("reference", FileKind::Surface,
                    "surface with the same vertices whose areas and lengths count", s.reference)
-      .option("Region",
-              Field{"cuts", "",
-                    "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; "
-                    "auto: cuts are found; template: those of --template"},
+      .category("Region")
+      .option("cuts",
+              "what stays of a hemisphere: FreeSurfer patch, label (not 0) or flat map; "
+              "auto: cuts are found; template: those of --template",
               s.cuts)
-      .option("Region", Field{"template", "", "whose cuts they are, as of register"},
-              s.templateName)
-      .option("Region", Field{"cut-name", "", "only those of the template's cuts; all by default"},
-              s.cutNames)
+      .option("template", "whose cuts they are, as of register", s.templateName)
+      .option("cut-name", "only those of the template's cuts; all by default", s.cutNames)
       .inputOption("sphere", FileKind::Surface,
                    "the surface's sphere in register with the template (default: ?h.sphere.reg "
                    "beside it, or of explica run)",
@@ -109,37 +107,32 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .inputOption("label", FileKind::VertexLabel,
                    "lay flat only where this label, or one of several, is not 0", s.labels,
                    "Region")
-      .option("Region", Field{"label-key", "", "lay flat only where --label has one of these keys"},
-              s.labelKeys)
-      .option("Flattening",
-              Field{"area-tolerance", "",
-                    "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
+      .option("label-key", "lay flat only where --label has one of these keys", s.labelKeys)
+      .category("Flattening")
+      .option({"area-tolerance", "",
+               "mean relative area error to reach (default: 0.01; with --cuts 0.05)", 1e-6, 1},
               s.areaTolerance)
       .options("Flattening", s.flatten, "solver.")
       .without("solver.area-tolerance")
       .without("solver.frames")
-      .option("Flattening",
-              Field{"frames", "",
-                    "states to write on the way, evenly spaced along the way that vertices go", 0,
-                    kMostFrames},
-              s.flatten.frames)
-      .option("Flattening", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
+      .option(
+          {"frames", "", "states to write on the way, evenly spaced along the way that vertices go",
+           0, kMostFrames},
+          s.flatten.frames)
+      .option("resume", "continue the run whose outputs are in --out", s.resume)
       .reuseOutputIf(s.resume)
-      .option("Grid", Field{"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3},
-              s.grid)
-      .option("Grid",
-              Field{"depths", "",
-                    "layers from white to pial (default: 5 with white and pial surface, else 1)", 1,
-                    1000},
-              s.depths);
+      .category("Grid")
+      .option({"grid", "mm", "size of the grid's cells along u and v", 1e-3, 1e3}, s.grid)
+      .option(
+          {"depths", "",
+           "layers from white to pial (default: 5 with white and pial surface, else 1)", 1, 1000},
+          s.depths);
   declareCortex(d, s.sheet, "Grid");
   declarePlace(d, s.place, "Grid");
   d.inputOption("volumes", FileKind::Volume, "volumes to resample into the grid, 3-D or 4-D",
                 s.volumes, "Grid")
       .severalWords("volumes")
-      .option("Grid", Field{"nearest", "", "the nearest voxel's value, for label volumes"},
-              s.nearest)
+      .option("nearest", "the nearest voxel's value, for label volumes", s.nearest)
       .inputOption("map", FileKind::VertexData,
                    "values on the vertices, for patch.tsv; the first colours flat.png", s.maps,
                    "Patch")
@@ -156,12 +149,6 @@ With --surfaces, or --white and --pial, the map becomes a stack of depths: grid.
       .needs({"depths"}, {"surfaces", "white"})
       .needs({"nearest"}, {"volumes"});
   declareFlatOutputs(d);
-}
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
 void warnOf(Context& context, const flattening::Disc& disc, const flattening::FlatMap& map) {
@@ -208,7 +195,7 @@ struct Made {
 
 Made make(Context& context, const FlattenSettings& s, const Subject& subject, flattening::Disc disc,
           const flattening::FlattenOptions& options) {
-  const auto begin = Clock::now();
+  const Stopwatch seconds;
   std::optional<flattening::Checkpoint> from;
   if (s.resume) from = flattening::readCheckpoint(context.outputFolder() / kFlatteningState);
   Made made;
@@ -225,7 +212,7 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
     auto step = context.step("cut");
     disc = openedAlongTemplate(context, subject.reference, disc, *subject.cuts);
   }
-  made.secondsCut = secondsSince(begin);
+  made.secondsCut = seconds();
   auto step = context.step("flatten");
   try {
     made.map = flattening::flatten(disc, options, context.monitor(), from ? &from->map : nullptr);
@@ -243,14 +230,14 @@ Made make(Context& context, const FlattenSettings& s, const Subject& subject, fl
 }
 
 Termination run(Context& context, const FlattenSettings& s) {
-  const auto begin = Clock::now();
+  const Stopwatch seconds;
   const Subject subject = subjectOf(context, s);
   const std::optional<Cortex> surfaces = checkBeside(context, s, subject);
   flattening::Disc whole = flattening::discOf(subject.reference.mesh, subject.faces);
   sayHowRead(context, subject.reference.origin);
   flattening::FlattenOptions options = s.flatten;
   options.areaTolerance = s.areaTolerance.value_or(s.cuts ? kCutTolerance : kPatchTolerance);
-  const double read = secondsSince(begin);
+  const double read = seconds();
   // What comes after cuts and map, in times of the start, which reads one surface.
   constexpr double kRest = 2, kEachFrame = 0.5;
   const TimeKept rest(read * (kRest + kEachFrame * options.frames));
@@ -260,7 +247,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   if (!made.hasMap()) return Termination::Interrupted;
   const flattening::Disc& disc = made.disc;
   const flattening::FlatMap& map = made.map;
-  const double flattened = secondsSince(begin);
+  const double flattened = seconds();
   warnOf(context, disc, map);
   auto step = context.step("measure and write");
   const TriangleMesh flat{patchPositions(map), disc.mesh.faces};
@@ -282,7 +269,7 @@ Termination run(Context& context, const FlattenSettings& s) {
   context.result("seconds_start", read);
   context.result("seconds_cut", made.secondsCut);
   context.result("seconds_flatten", flattened - read - made.secondsCut);
-  context.result("seconds_output", secondsSince(begin) - flattened);
+  context.result("seconds_output", seconds() - flattened);
   const bool folded = map.turnedOver > 0 || map.rimCrossings > 0;
   return folded ? Termination::Stalled : termination;
 }

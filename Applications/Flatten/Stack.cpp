@@ -61,8 +61,7 @@ void checkPlace(Context& context, const FlattenSettings& s, const std::string& v
                        "': no vertex of the patch lies in it; do both lie in the same space? "
                        "(--to-volume, --surface-space and --fs-volume say how)");
   }
-  constexpr double kFew = 0.5;
-  if (share >= kFew) return;
+  if (share >= 0.5) return;
   context.warn(
       printed("only %.1f %% of the patch lie in '%s'", 100 * share, stemOf(volume).c_str()));
 }

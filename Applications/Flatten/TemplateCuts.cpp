@@ -76,11 +76,10 @@ io::LabelMap foundOnTemplate(Context& context, const CortexTemplate& files,
 
 /// The names asked for, or all.
 std::map<Label, std::string> chosenCuts(const FlattenSettings& s, const io::LabelMap& labels) {
-  constexpr Label kFirstCut = 2;
   std::map<Label, std::string> all, chosen;
   std::string known;
   for (const io::LabelEntry& entry : labels.table) {
-    if (entry.key < kFirstCut) continue;
+    if (entry.key < 2) continue;  // cortex and wall
     all[entry.key] = entry.name;
     known += (known.empty() ? "" : ", ") + entry.name;
   }

@@ -53,50 +53,39 @@ Maps are best smoothed before (explica smooth): random field theory assumes a sm
       .oneByOne("surface")
       .oneByOne("mask")
       .oneByOne("atlas")
-      .option("Model", Field{"model", "", "formula: 'thickness ~ group * age + sex'"}, s.model)
+      .category("Model")
+      .option("model", "formula: 'thickness ~ group * age + sex'", s.model)
       .require("model")
-      .option("Model",
-              Field{"contrast", "",
-                    "NAME=EXPRESSION of columns, as 'x=group[b] - group[a]'; ';' between several "
-                    "is an F test"},
+      .option("contrast",
+              "NAME=EXPRESSION of columns, as 'x=group[b] - group[a]'; ';' between several "
+              "is an F test",
               s.contrasts)
-      .option("Model",
-              Field{"columns", "", "columns of the table to analyse; * stands for any characters"},
-              s.columns)
-      .option("Model", Field{"person", "", "column that names people (default, too: the first)"},
-              s.person)
-      .option("Model",
-              Field{"subset", "", "leave out people of one list only, instead of refusing them"},
-              s.subset)
-      .option("Model",
-              Field{"site", "",
-                    "differences between sites: columns of the model, random intercepts, or taken "
-                    "off before by ComBat"},
+      .option("columns", "columns of the table to analyse; * stands for any characters", s.columns)
+      .option("person", "column that names people (default, too: the first)", s.person)
+      .option("subset", "leave out people of one list only, instead of refusing them", s.subset)
+      .option("site",
+              "differences between sites: columns of the model, random intercepts, or taken "
+              "off before by ComBat",
               s.site)
-      .option("Model", Field{"site-column", "", "column that names sites"}, s.siteColumn)
-      .option("Inference",
-              Field{"threshold", "", "two-sided P of single vertices that forms clusters",
-                    kAboveZero, 0.5},
-              s.threshold)
-      .option("Inference", Field{"permutations", "", "shuffles for family-wise P; 0: none", 0, 1e7},
-              s.permutations)
-      .option("Inference", Field{"tfce", "", "threshold-free cluster enhancement, by permutations"},
-              s.tfce)
-      .option("Inference", Field{"seed", "", "of the shuffles", 0, 2147483647}, s.seed)
-      .option("Inference",
-              Field{"blocks", "",
-                    "column of people who may take each other's place only (default: that of the "
-                    "random intercept)"},
-              s.blocks)
-      .option("Inference",
-              Field{"exchange", "",
-                    "what is shuffled: people within blocks, whole blocks of one size, or signs"},
-              s.exchange)
+      .option("site-column", "column that names sites", s.siteColumn)
+      .category("Inference")
       .option(
-          "Reading",
-          Field{"block-memory", "MB",
-                "of people's values at a time; permutations and ComBat need all at once", 1, 1e6},
-          s.blockMegabytes)
+          {"threshold", "", "two-sided P of single vertices that forms clusters", kAboveZero, 0.5},
+          s.threshold)
+      .option({"permutations", "", "shuffles for family-wise P; 0: none", 0, 1e7}, s.permutations)
+      .option("tfce", "threshold-free cluster enhancement, by permutations", s.tfce)
+      .option({"seed", "", "of the shuffles", 0, 2147483647}, s.seed)
+      .option("blocks",
+              "column of people who may take each other's place only (default: that of the "
+              "random intercept)",
+              s.blocks)
+      .option("exchange",
+              "what is shuffled: people within blocks, whole blocks of one size, or signs",
+              s.exchange)
+      .category("Reading")
+      .option({"block-memory", "MB",
+               "of people's values at a time; permutations and ComBat need all at once", 1, 1e6},
+              s.blockMegabytes)
       .needs({"seed", "exchange", "blocks", "tfce"}, {"permutations"})
       .needs({"threshold", "atlas"}, {"surface"})
       .needs({"site-column"}, {"site=fixed", "site=random", "site=combat"})
@@ -240,7 +229,7 @@ bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
   return complete;
 }
 
-/// @return  whether all is written: without the page, whose pictures take seconds, after a stop
+/// @return  whether all is written: without the page, which takes seconds, after a stop
 bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
               const Eigen::MatrixXd& fitted, const GlmResults& results) {
   auto step = context.step("write");

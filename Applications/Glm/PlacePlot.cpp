@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "PlacePlot.h"
+
 #include "Explica/Core/Html.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Provenance/Json.h"
-#include "Plots.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,50 @@ constexpr Eigen::Index kMostPlaces = 10242;  // of a hemisphere
 // a space.
 constexpr std::string_view kDigits =
     "#$%&'()*+,-./0123456789:;=>?@ABCDEFGHIJKLMNOPQRSTUVWXYZ[]^_`abcdefghijklmnopqrstuvwxyz{|}~";
+
+/// The person's report, relative to the page's folder; empty if it is not known.
+std::string reportOf(const Observations& o, std::size_t person) {
+  const auto column = o.about.find("report");
+  if (!column || statistics::isMissing(o.about.rows[person][*column])) return {};
+  return o.about.rows[person][*column];
+}
+
+/// A plot's horizontal axis: the first column of the contrast's terms.
+struct Axis {
+  std::string name;
+  std::vector<double> x;
+  std::vector<std::string> levels;  ///< of a categorical column
+};
+
+Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contrast& contrast) {
+  const statistics::Factor* factor = nullptr;
+  for (std::size_t c = 0; c < r.design.columns.size(); ++c) {
+    if (contrast.weights.row(static_cast<Eigen::Index>(c)).isZero()) continue;
+    for (const std::string& name : r.design.terms[static_cast<std::size_t>(r.design.termOf[c])]) {
+      for (const auto& f : r.design.factors) {
+        if (f.name == name && (factor == nullptr || f.levels.empty())) factor = &f;
+      }
+    }
+  }
+  Axis axis;
+  if (factor == nullptr) {
+    axis.name = "people";
+    for (std::size_t i = 0; i < o.people.size(); ++i) axis.x.push_back(static_cast<double>(i));
+    return axis;
+  }
+  axis.name = factor->name;
+  axis.levels = factor->levels;
+  for (const auto& row : o.about.rows) {
+    const std::string& cell = row[o.about.at(factor->name)];
+    if (factor->levels.empty()) {
+      axis.x.push_back(statistics::numberIn(cell).value_or(std::nan("")));
+    } else {
+      const auto level = std::find(factor->levels.begin(), factor->levels.end(), cell);
+      axis.x.push_back(static_cast<double>(level - factor->levels.begin()));
+    }
+  }
+  return axis;
+}
 
 /// Vertices of a hemisphere whose values are on the page.  The first vertices of a divided
 /// icosahedron are those of a coarser one; of another surface every n-th is taken.
@@ -81,19 +126,29 @@ Json axisJson(const std::string& contrast, const Axis& axis) {
   return {{"contrast", contrast}, {"name", axis.name}, {"levels", axis.levels}, {"x", x}};
 }
 
-Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values) {
-  const double share = kCharacters / static_cast<double>(o.people.size() * o.hemispheres.size());
+Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values,
+            const std::vector<NamedPlace>& named) {
+  const double share =
+      kCharacters /
+      static_cast<double>(o.people.size() * std::max<std::size_t>(1, o.hemispheres.size()));
   const auto most = std::clamp<Eigen::Index>(static_cast<Eigen::Index>(share), 12, kMostPlaces);
   Json data = {{"people", o.people}, {"digits", std::string(kDigits)}};
   Json low = Json::array(), high = Json::array(), views = Json::object(), reports = Json::array();
   std::string digits;
   int first = 0;
   for (const MapSide& side : o.hemispheres) {
+    if (!o.surface) break;  // nothing to click
     const auto places = placesOf(side.count, most);
     const auto vertices = o.surface->mesh.positions.middleRows(side.first, side.count);
     views[side.structure] = {{"first", first}, {"place", nearestPlaces(vertices, places)}};
     first += static_cast<int>(places.size());
     for (const Eigen::Index v : places) addPlace(values.col(side.first + v), low, high, digits);
+  }
+  data["named"] = Json::array();
+  for (const NamedPlace& one : named) {
+    data["named"].push_back(
+        {{"title", nameOfPlace(o, one.place)}, {"contrast", one.contrast}, {"place", low.size()}});
+    addPlace(values.col(one.place), low, high, digits);
   }
   for (std::size_t i = 0; i < o.people.size(); ++i) reports.push_back(reportOf(o, i));
   data["reports"] = reports;
@@ -109,8 +164,8 @@ Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& v
 }
 
 constexpr const char* kSection =
-    R"html(<section id="place"><h3>People at a place</h3><p class="quiet">Click a place of the surface above: each person's value there, to a hundredth of their range, over the contrast's covariate. A point leads to the person's report.</p>
-<label>Contrast <select id="place-axis"></select></label><div id="place-plot" aria-live="polite" style="max-width:640px"></div></section>
+    R"html(<section id="place"><h3>People at a place</h3><p class="quiet">Each person's value at a place, to a hundredth of their range, over the contrast's covariate: of a peak or region, or where the surface above is clicked. A point leads to the person's report.</p>
+<label>Place <select id="place-name"></select></label> <label>Contrast <select id="place-axis"></select></label><div id="place-plot" aria-live="polite" style="max-width:640px"></div></section>
 <script type="application/json" id="place-data">)html";
 
 constexpr const char* kScript = R"js(</script>
@@ -119,7 +174,9 @@ constexpr const char* kScript = R"js(</script>
   'use strict';
   const data = JSON.parse(document.getElementById('place-data').textContent);
   const box = document.getElementById('place-plot'), choice = document.getElementById('place-axis');
+  const names = document.getElementById('place-name');
   data.axes.forEach((axis, n) => choice.add(new Option(axis.contrast, String(n))));
+  data.named.forEach((one, n) => names.add(new Option(data.axes[one.contrast].contrast + ': ' + one.title, String(n))));
   const digits = new Map([...data.digits].map((c, n) => [c, n])), last = data.digits.length - 1;
   const make = (name, attributes, parent) => {
     const element = document.createElementNS('http://www.w3.org/2000/svg', name);
@@ -157,12 +214,23 @@ constexpr const char* kScript = R"js(</script>
       make('title', {}, dot).textContent = data.people[i] + ': ' + readable(value);
     }
   }
+  function drawNamed() {
+    const one = data.named[Number(names.value)];
+    if (!one) return;
+    place = one.place;
+    title = one.title;
+    choice.value = String(one.contrast);
+    draw();
+  }
   choice.addEventListener('change', draw);
+  names.addEventListener('change', drawNamed);
+  drawNamed();
   document.addEventListener('place', (event) => {
     const view = data.views[event.detail.view];
     if (!view) return;
     place = view.first + view.place[event.detail.vertex];
     title = event.detail.view + ', near vertex ' + event.detail.vertex;
+    names.value = '';
     draw();
   });
 })();
@@ -171,8 +239,9 @@ constexpr const char* kScript = R"js(</script>
 
 }  // namespace
 
-std::string placePlot(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values) {
-  return kSection + scriptSafe(provenance::textOf(dataOf(o, r, values))) + kScript;
+std::string placePlot(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values,
+                      const std::vector<NamedPlace>& named) {
+  return kSection + scriptSafe(provenance::textOf(dataOf(o, r, values, named))) + kScript;
 }
 
 }  // namespace explica::app

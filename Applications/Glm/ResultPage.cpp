@@ -3,11 +3,11 @@
 
 #include "ResultPage.h"
 
+#include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
-#include "Explica/Report/SurfacePicture.h"
-#include "Plots.h"
+#include "PlacePlot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,80 +15,16 @@
 namespace explica::app {
 namespace {
 
-using report::Colour;
-
-constexpr Colour kNotTested = {0.55F, 0.55F, 0.55F};  // linear light: off the mask
-constexpr Colour kBelow = {0.78F, 0.78F, 0.78F};      // below the threshold
-constexpr int kMapsAtFullWidth = 3;    // of a page; more are drawn smaller, for as many pixels
-constexpr int kFullWidth = 420;        // of a view, pixels
-constexpr std::size_t kPoints = 6000;  // people in all plots of a contrast
-constexpr std::size_t kPlots = 6;      // peaks of a contrast that are plotted
-
-struct Size {
-  int width, height;
-};
-
-/// Of a view: all pictures of a page have as many pixels together, whatever the number of
-/// contrasts.
-Size sizeOfViews(const GlmResults& r) {
-  const double maps = 1 + 3 * static_cast<double>(r.contrasts.size());
-  const double share = std::sqrt(std::min(1.0, kMapsAtFullWidth / maps));
-  const int width = static_cast<int>(kFullWidth * share);
-  return {width, width * 3 / 4};
-}
-
-struct ShownSide {
-  const MapSide* hemisphere;
-  TriangleMesh mesh;
-  TriangleMesh inflated = {};
-};
-
-std::vector<ShownSide> sidesOf(const Observations& o) {
-  std::vector<ShownSide> sides;
-  for (const MapSide& h : o.hemispheres) {
-    ShownSide side{&h, {o.surface->mesh.positions.middleRows(h.first, h.count), {}}};
-    const Faces& all = o.surface->mesh.faces;
-    std::vector<std::int32_t> mine;
-    for (Eigen::Index f = 0; f < all.rows(); ++f) {
-      if (all(f, 0) >= h.first && all(f, 0) < h.first + h.count) {
-        mine.push_back(static_cast<std::int32_t>(f));
-      }
-    }
-    side.mesh.faces = (all(mine, Eigen::all).array() - static_cast<std::int32_t>(h.first)).matrix();
-    side.inflated = maps::inflated(side.mesh);
-    sides.push_back(std::move(side));
-  }
-  return sides;
-}
-
-/// Lateral and medial pictures of each hemisphere.
-report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const Eigen::VectorXd& values,
-                            const report::ColourScale& scale, double threshold, Size pixels) {
-  report::ReportViews views;
-  views.scale = scale;
-  report::SurfacePictureOptions size{.width = pixels.width, .height = pixels.height};
-  for (const ShownSide& side : sides) {
-    std::vector<Colour> colours;
-    for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {
-      const double value = values[side.hemisphere->first + v];
-      colours.push_back(std::isnan(value)             ? kNotTested
-                        : std::abs(value) < threshold ? kBelow
-                                                      : scale(value));
-    }
-    const report::SurfaceScene scene(side.inflated);
-    const bool right = side.hemisphere->structure == "CortexRight";
-    const std::string name = right                                        ? "right"
-                             : side.hemisphere->structure == "CortexLeft" ? "left"
-                                                                          : "";
-    for (const bool lateral : {true, false}) {
-      const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
-      views.views.push_back(
-          {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height),
-                        colours, report::Filling::Smooth, size)});
+TriangleMesh meshOf(const Observations& o, const MapSide& h) {
+  const Faces& all = o.surface->mesh.faces;
+  std::vector<std::int32_t> mine;
+  for (Eigen::Index f = 0; f < all.rows(); ++f) {
+    if (all(f, 0) >= h.first && all(f, 0) < h.first + h.count) {
+      mine.push_back(static_cast<std::int32_t>(f));
     }
   }
-  return views;
+  return {o.surface->mesh.positions.middleRows(h.first, h.count),
+          (all(mine, Eigen::all).array() - static_cast<std::int32_t>(h.first)).matrix()};
 }
 
 report::ColourScale symmetric(const Eigen::VectorXd& values, const std::string& title) {
@@ -106,62 +42,38 @@ Eigen::VectorXd meanOf(const GlmResults& r) {
   return (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
 }
 
-void addViews(const std::vector<ShownSide>& sides, const GlmResults& r,
-              report::ReportContent& page) {
-  if (sides.empty()) return;
-  const Size size = sizeOfViews(r);
-  const Eigen::VectorXd mean = meanOf(r);
-  auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0, size);
-  views.id = "mean";
-  views.title = "Mean of all people";
-  views.caption = "Fitted at the people's mean covariates. Dark grey: not analysed.";
-  page.views.push_back(std::move(views));
-  for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
-    const auto& maps = r.maps.contrasts[k];
-    const std::string& name = r.contrasts[k].name;
-    const bool t = r.contrasts[k].isT();
-    const auto add = [&](const std::string& what, const Eigen::VectorXd& values, double threshold,
-                         const std::string& caption) {
-      auto shown = viewsOf(sides, values, symmetric(values, what), threshold, size);
-      shown.id = fileName(name) + "-" + std::to_string(page.views.size());
-      shown.title = name + ": " + what;
-      shown.caption = caption;
-      page.views.push_back(std::move(shown));
-    };
-    add(t ? "effect" : "partial R\u00b2", maps.effect, 0, "Not thresholded.");
-    add(t ? "t" : "F", maps.statistic, 0, "Not thresholded.");
-    add(t ? "t" : "F", maps.statistic, r.inferences[k].threshold,
-        "Where |" + std::string(t ? "t" : "F") + "| is at least " +
-            numberText(r.inferences[k].threshold, 3) +
-            ", the threshold that forms clusters; this alone makes nothing significant.");
-  }
-}
-
 /// The hemispheres that turn, inflated or as they are, with the maps of all contrasts.
-void addTurnable(const std::vector<ShownSide>& sides, const GlmResults& r,
-                 report::ReportContent& page) {
-  for (const ShownSide& side : sides) {
-    report::Evolution view = report::evolutionOf({side.mesh});
-    view.shapes = {{"inflated", side.inflated.positions}, {"as it is", {}}};
-    view.title = side.hemisphere->structure;
+void addMaps(const Observations& o, const GlmResults& r, report::ReportContent& page) {
+  for (const MapSide& side : o.hemispheres) {
+    checkpoint();
+    const TriangleMesh mesh = meshOf(o, side);
+    report::Evolution view = report::evolutionOf({mesh});
+    view.shapes = {{"inflated", maps::inflated(mesh).positions}, {"as it is", {}}};
+    view.title = side.structure;
     view.scene = "Cortex";
-    const auto part = [&](const Eigen::VectorXd& values) {
-      return Eigen::VectorXd(values.segment(side.hemisphere->first, side.hemisphere->count));
+    const auto add = [&](const Eigen::VectorXd& values, const report::ColourScale& scale) {
+      view.maps.push_back({values.segment(side.first, side.count), scale});
     };
     const Eigen::VectorXd mean = meanOf(r);
-    view.maps.push_back({part(mean), report::scaleFor(mean, "mean", "")});
+    add(mean, report::scaleFor(mean, "mean", ""));
     for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
       const auto& maps = r.maps.contrasts[k];
-      view.maps.push_back({part(maps.statistic),
-                           symmetric(maps.statistic, r.contrasts[k].name +
-                                                         (r.contrasts[k].isT() ? ", t" : ", F"))});
+      const bool t = r.contrasts[k].isT();
+      const std::string name = r.contrasts[k].name + ", ", statistic = name + (t ? "t" : "F");
+      const double least = r.inferences[k].threshold;  // that forms clusters
+      const auto scale = symmetric(maps.statistic, statistic);
+      add(maps.effect, symmetric(maps.effect, name + (t ? "effect" : "partial R\u00b2")));
+      add(maps.statistic, scale);
+      auto beyond = scale;
+      beyond.title = statistic + " beyond " + numberText(least, 3);
+      add((maps.statistic.array().abs() < least).select(kNaN, maps.statistic), beyond);
     }
     page.evolutions.push_back(std::move(view));
   }
 }
 
-/// Places to plot: peaks of the largest clusters, or the regions of the smallest P.
-std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& r, std::size_t k) {
+/// Places to name: peaks of the largest clusters, or the regions of the smallest P.
+std::vector<Eigen::Index> placesToName(const Observations& o, const GlmResults& r, std::size_t k) {
   std::vector<Eigen::Index> places;
   if (o.surface) {
     for (const auto& c : r.inferences[k].clusters) places.push_back(c.cluster.peak);
@@ -173,22 +85,16 @@ std::vector<Eigen::Index> placesToPlot(const Observations& o, const GlmResults& 
       return r.maps.contrasts[k].p[a] < r.maps.contrasts[k].p[b];
     });
   }
-  const std::size_t most = std::clamp<std::size_t>(kPoints / o.people.size(), 1, kPlots);
-  places.resize(std::min(places.size(), most));
+  places.resize(std::min<std::size_t>(places.size(), 6));
   return places;
 }
 
-void addPlots(const Observations& o, const GlmResults& r, const Eigen::MatrixXd* values,
-              report::ReportContent& page) {
-  if (values == nullptr) return;
+std::vector<NamedPlace> namedPlaces(const Observations& o, const GlmResults& r) {
+  std::vector<NamedPlace> named;
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
-    const Axis axis = axisOf(o, r, r.contrasts[k]);
-    for (const Eigen::Index v : placesToPlot(o, r, k)) {
-      page.charts.push_back({fileName(r.contrasts[k].name) + "-at-" + std::to_string(v),
-                             scatterSvg(o, axis, values->col(v), nameOfPlace(o, v)),
-                             r.contrasts[k].name + ": each person at the peaks"});
-    }
+    for (const Eigen::Index v : placesToName(o, r, k)) named.push_back({k, v});
   }
+  return named;
 }
 
 report::ReportTable clustersOf(const Observations& o, const GlmResults& r, std::size_t k) {
@@ -218,7 +124,7 @@ report::ReportTable regionsOf(const Observations& o, const GlmResults& r, std::s
   table.title = r.contrasts[k].name + ": regions of the smallest P";
   table.caption = "All regions are in regions.tsv.";
   table.columns = {"region", "effect", "standard error", "t or F", "P", "q"};
-  for (const Eigen::Index v : placesToPlot(o, r, k)) {
+  for (const Eigen::Index v : placesToName(o, r, k)) {
     const auto& m = r.maps.contrasts[k];
     table.rows.push_back({regionOf(o, v), numberText(m.effect[v], 4), numberText(m.error[v], 3),
                           numberText(m.statistic[v], 4), numberText(m.p[v], 3),
@@ -283,19 +189,18 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
   page.title = "Group statistics: " + settings.model;
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
-  const std::vector<ShownSide> sides = o.surface ? sidesOf(o) : std::vector<ShownSide>();
-  addTurnable(sides, r, page);
-  addViews(sides, r, page);
-  addPlots(o, r, values, page);
+  if (o.surface) addMaps(o, r, page);
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     page.tables.push_back(o.surface ? clustersOf(o, r, k) : regionsOf(o, r, k));
   }
   std::string html = report::reportPage(page);
-  // Beside the surface that turns, which says where it is clicked.
-  const std::size_t view = html.find("<section id=\"view3d\"");
+  if (values == nullptr) return html;
+  // Beside the surface that turns, which says where it is clicked, or the numbers.
   const std::string ending = "</section>";
-  if (values == nullptr || sides.empty() || view == std::string::npos) return html;
-  return html.insert(html.find(ending, view) + ending.size(), placePlot(o, r, *values));
+  const std::size_t beside =
+      html.find(o.surface ? "<section id=\"view3d\"" : "<section id='numbers'");
+  return html.insert(html.find(ending, beside) + ending.size(),
+                     placePlot(o, r, *values, namedPlaces(o, r)));
 }
 
 }  // namespace explica::app

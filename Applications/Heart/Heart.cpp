@@ -18,7 +18,6 @@
 namespace explica::app {
 namespace {
 
-constexpr double kFarTiltDeg = 30;  // of the axis from the slices' normal: not short axis
 constexpr double kLowSeptum = 60, kHighSeptum = 200;  // degrees
 
 struct HeartSettings {
@@ -53,10 +52,10 @@ void declare(Declaration& d, HeartSettings& s) {
                    s.images)
       .severalWords("image")
       .options("Labels", s.labels)
-      .option("Frames",
-              Field{"phases", "",
-                    "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
-                    "numbers counted from 0, as 0,9, which are taken for ED and ES"},
+      .category("Frames")
+      .option("phases",
+              "all; ED,ES: only these two, found as greatest and smallest cavity; or two "
+              "numbers counted from 0, as 0,9, which are taken for ED and ES",
               s.frames)
       .options("Orientation", s.heart.orientation)
       .options("Thickness", s.heart.wall)
@@ -119,7 +118,7 @@ void sayWhatIsOdd(Context& context, const ventricle::Beat& beat) {
                  " is left out of thickness and mass: " + frame.why);
   }
   const ventricle::LongAxis& axis = beat.atDiastole().axis;
-  if (axis.stackAngleDeg > kFarTiltDeg && ventricle::hasThickSlices(beat.atDiastole().heart.grid)) {
+  if (axis.stackAngleDeg > 30 && ventricle::hasThickSlices(beat.atDiastole().heart.grid)) {
     context.warn("the long axis is tilted by " + degrees(axis.stackAngleDeg) +
                  " from the normal of the slices: these are no short-axis slices, or a label is "
                  "wrong");

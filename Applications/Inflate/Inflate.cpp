@@ -43,14 +43,13 @@ What is written is tested once more: faces that cross in it and did not at the s
       .example("explica inflate lh.white --out inflated", "A hemisphere's folds, all in view")
       .input("SURFACE", FileKind::Surface, "closed triangulated surface", s.surface)
       .options("Reading", s.reading)
-      .option("Inflation",
-              Field{"repair", "",
-                    "remove self-intersections first; distortion is measured against the repaired "
-                    "surface"},
+      .category("Inflation")
+      .option("repair",
+              "remove self-intersections first; distortion is measured against the repaired "
+              "surface",
               s.repair)
       .options("Inflation", s.inflate)
-      .option("Inflation", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
+      .option("resume", "continue the run whose outputs are in --out", s.resume)
       .reuseOutputIf(s.resume)
       .output("inflated.surf.gii", FileKind::Surface, "the inflated surface")
       .output("*.inflated", FileKind::Surface, "the same as FreeSurfer writes it")

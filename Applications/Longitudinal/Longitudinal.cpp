@@ -86,7 +86,8 @@ void declare(Declaration& d, LongitudinalSettings& s) {
       }
     }
   }
-  d.option("Run", Field{"hemisphere", "", "which hemisphere to work on"}, s.hemisphere)
+  d.category("Run")
+      .option("hemisphere", "which hemisphere to work on", s.hemisphere)
       .inputOption("atlas", FileKind::LabelVolume,
                    "labels in the space of the first session, as AAL's: tell hemispheres apart "
                    "instead of a template's, and are the regions",

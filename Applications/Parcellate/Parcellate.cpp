@@ -56,21 +56,17 @@ void declare(Declaration& d, ParcellateSettings& s) {
              s.folder)
       .inputOption("atlas", FileKind::VertexLabel, "labels of a template or of a labelled person",
                    s.atlases)
-      .option("Input",
-              Field{"template", "",
-                    "as of register: whose regions they are without --atlas (default: colin27)"},
+      .category("Input")
+      .option("template",
+              "as of register: whose regions they are without --atlas (default: colin27)",
               s.templateName)
-      .option("Input",
-              Field{"hemisphere", "", "L or R, where neither the atlas' name nor the sphere says"},
+      .option("hemisphere", "L or R, where neither the atlas' name nor the sphere says",
               s.hemisphere)
-      .option(
-          "Volume",
-          Field{"volume", "",
-                "also label the voxels of which at least half lies between white and pial surface"},
-          s.volume)
-      .option("Volume",
-              Field{"ribbon", "", "folder with white and pial surface, where SURFACES has none"},
-              s.ribbon)
+      .category("Volume")
+      .option("volume",
+              "also label the voxels of which at least half lies between white and pial surface",
+              s.volume)
+      .option("ribbon", "folder with white and pial surface, where SURFACES has none", s.ribbon)
       .inputOption("like", FileKind::Volume,
                    "image whose voxels they are (default: 1 mm, about the surfaces)", s.like,
                    "Volume")

@@ -22,7 +22,8 @@ void declareKind(Declaration& d, PolygonKindSettings& s, const char* synopsis,
           "A closed polygon whose upper side is folded, with the region and the viewpoint that "
           "'explica polygon' takes, and what is known of them.")
       .example(example, "Writes polygon.csv; summary.json names region and viewpoint")
-      .option("Polygon", Field{"spacing", "mm", "size of a pixel"}, s.spacing)
+      .category("Polygon")
+      .option({"spacing", "mm", "size of a pixel"}, s.spacing)
       .output("polygon.csv", FileKind::Polygon, "vertices in order, counter-clockwise");
 }
 

@@ -19,40 +19,33 @@ void declarePolygon(Declaration& d, PolygonSettings& s) {
       .example("explica polygon ED_label.nii.gz --label-key 2 --slice 4 --out contour",
                "Outer contour of a label, RAS mm")
       .input("FILE", FileKind::Any, "polygon (CSV, VTK polydata), or label image", s.file)
-      .option("Contour",
-              Field{"phantom", "", "instead of FILE: a phantom with its region and viewpoint"},
-              s.phantom);
+      .category("Contour")
+      .option("phantom", "instead of FILE: a phantom with its region and viewpoint", s.phantom);
   declarePolygonReading(d, s.reading);
-  d.option("Region",
-           Field{"region", "",
-                 "first and last vertex, I:J, or seen: between the extremities of the view; "
-                 "default: the whole polygon"},
-           s.region)
-      .option("Viewpoint",
-              Field{"viewpoint", "mm", "point to look from; of several the weighted mean counts"},
+  d.category("Region")
+      .option("region",
+              "first and last vertex, I:J, or seen: between the extremities of the view; "
+              "default: the whole polygon",
+              s.region)
+      .category("Viewpoint")
+      .option({"viewpoint", "mm", "point to look from; of several the weighted mean counts"},
               s.viewpoint)
-      .option("Viewpoint",
-              Field{"direction", "", "look from the region's centroid plus --distance along this"},
+      .option("direction", "look from the region's centroid plus --distance along this",
               s.direction)
-      .option("Viewpoint",
-              Field{"distance", "mm", "how far off a viewpoint given by --direction is"},
-              s.distance)
-      .option("Viewpoint",
-              Field{"view-weights", "",
-                    "weights of several viewpoints or directions, one each, in their order "
-                    "(default: equal)",
-                    kAboveZero},
+      .option({"distance", "mm", "how far off a viewpoint given by --direction is"}, s.distance)
+      .option({"view-weights", "",
+               "weights of several viewpoints or directions, one each, in their order "
+               "(default: equal)",
+               kAboveZero},
               s.weights)
-      .option("Viewpoint",
-              Field{"view-line", "mm", "look from all points of the line X,Y,X,Y between two"},
-              s.line)
+      .option({"view-line", "mm", "look from all points of the line X,Y,X,Y between two"}, s.line)
       .options("Unfolding", s.unfolding)
-      .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
+      .category("Unfolding")
+      .option("resume", "continue the run whose outputs are in --out", s.resume)
       .reuseOutputIf(s.resume)
-      .option("Output", Field{"frames", "", "write this many states on the way", 0, 100000},
-              s.frames)
-      .option("Output", Field{"stages", "", "panels of evolution.svg", 1, 1000}, s.stages)
+      .category("Output")
+      .option({"frames", "", "write this many states on the way", 0, 100000}, s.frames)
+      .option({"stages", "", "panels of evolution.svg", 1, 1000}, s.stages)
       .needs({"distance"}, {"direction"})
       .output("polygon.csv", FileKind::Polygon, "the polygon as it was understood")
       .output("unfolded.csv", FileKind::Polygon, "the unfolded polygon")

@@ -53,9 +53,10 @@ void declare(Declaration& d, RegionsSettings& s) {
                    s.atlases)
       .require("atlas")
       .inputOption("map", FileKind::VertexData, "a further map to be measured", s.maps)
-      .option("Input", Field{"hemisphere", "", "L or R, where the atlas' name does not say"},
-              s.hemisphere)
-      .option("Output", Field{"person", "", "name in the tables; unset: the folder's"}, s.person)
+      .category("Input")
+      .option("hemisphere", "L or R, where the atlas' name does not say", s.hemisphere)
+      .category("Output")
+      .option("person", "name in the tables; unset: the folder's", s.person)
       .output("*.stats", FileKind::Table, "?h.ATLAS.stats: FreeSurfer's table of an atlas")
       .output("regions.tsv", FileKind::Table,
               "person, hemisphere, atlas, region, measure, value, unit");

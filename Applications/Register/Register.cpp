@@ -36,11 +36,12 @@ void declare(Declaration& d, RegisterSettings& s) {
                    s.sulc, "Folds")
       .inputOption("curvature", FileKind::VertexData, "mean curvature (default: beside the sphere)",
                    s.curvature, "Folds")
-      .option("Folds", Field{"surfaces", "", "folder with the folding maps"}, s.surfaces)
-      .option("Target",
-              Field{"template", "",
-                    "folder, name of a subject in $SUBJECTS_DIR (fsaverage), or colin27 (also if "
-                    "none is named): made once from Colin27 of mricron-data"},
+      .category("Folds")
+      .option("surfaces", "folder with the folding maps", s.surfaces)
+      .category("Target")
+      .option("template",
+              "folder, name of a subject in $SUBJECTS_DIR (fsaverage), or colin27 (also if "
+              "none is named): made once from Colin27 of mricron-data",
               s.templateName)
       .inputOption("to", FileKind::Surface, "another person's sphere instead of a template", s.to,
                    "Target")
@@ -48,7 +49,7 @@ void declare(Declaration& d, RegisterSettings& s) {
                    s.toSulc, "Target")
       .inputOption("to-curvature", FileKind::VertexData, "its mean curvature (default: beside it)",
                    s.toCurvature, "Target")
-      .option("Target", Field{"mirror", "", "register to the other hemisphere, mirrored"}, s.mirror)
+      .option("mirror", "register to the other hemisphere, mirrored", s.mirror)
       .options("Registration", s.registration)
       .ofAnother("to", s.mirror)
       .ofAnother("to-sulc", s.mirror)

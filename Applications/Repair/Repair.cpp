@@ -34,7 +34,8 @@ void declare(Declaration& d, RepairSettings& s) {
                "Both surfaces of a hemisphere, as repaired/lh.white, repaired/lh.pial and GIFTI")
       .input("SURFACE", FileKind::Surface, "one surface, or several with the same faces",
              s.surfaces)
-      .option("Repair", Field{"max-move", "mm", "how far a vertex may be moved"}, s.repair.maxMove)
+      .category("Repair")
+      .option({"max-move", "mm", "how far a vertex may be moved"}, s.repair.maxMove)
       .output("*.surf.gii", FileKind::Surface, "NAME.surf.gii: each surface, scanner RAS")
       .output("?h.*", FileKind::Surface,
               "of FreeSurfer files: the same in their own format and frame")

@@ -125,10 +125,7 @@ Json confinedValues(Context& context, Declaration& declaration, const Json& reco
         refuse(text, "which is none of the inputs that the record names");
       }
     });
-    if (declaration.reuse != nullptr) {
-      const auto* flag = std::get_if<bool*>(&parameter->option.target);
-      if (flag != nullptr && *flag == declaration.reuse) value = false;
-    }
+    if (parameter->option.place == declaration.reuse) value = false;
     if (given) values[name] = value;
     try {
       provenance::setValue(parameter->option, value);
@@ -137,8 +134,7 @@ Json confinedValues(Context& context, Declaration& declaration, const Json& reco
     }
   }
   for (const Parameter& parameter : declaration.parameters) {
-    const auto* text = std::get_if<std::string*>(&parameter.option.target);
-    if (text != nullptr && *text == declaration.fallbackOut) {
+    if (parameter.option.place == declaration.fallbackOut) {
       values[parameter.option.name] = out.string();
     }
   }

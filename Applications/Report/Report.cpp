@@ -27,13 +27,10 @@ void declare(Declaration& d, ReportSettings& s) {
       .example("explica report colin", "Writes colin/report.html")
       .example("explica report colin --map sampled/bold.func.gii",
                "The same with a sampled map on the surfaces and on the opened patch")
-      .example("explica report sub-01 --reference study/runs",
-               "The same with the thickness of a study behind this person's")
       .input("DIR", FileKind::Folder, "output folder of a command or of explica run", s.folder)
-      .option("Page", Field{"page", "", "file to write (default: report.html in the folder)"},
-              s.page)
-      .option("Page", Field{"out", "", "new folder to write report.html into, instead of --page"},
-              s.out)
+      .category("Page")
+      .option("page", "file to write (default: report.html in the folder)", s.page)
+      .option("out", "new folder to write report.html into, instead of --page", s.out)
       .options("Page", s.show)
       .inputOption("map", FileKind::VertexData,
                    "vertex data (of explica sample, say) to show on the surfaces, on the unfolding "
@@ -41,10 +38,6 @@ void declare(Declaration& d, ReportSettings& s) {
                    s.show.maps, "Page")
       .oneByOne("map")
       .excludes("out", {"page"})
-      .inputOption(
-          "reference", FileKind::Folder,
-          R"(folder of others' results, of a person or a study or a FreeSurfer subject, whose thickness is drawn behind this one's histograms (default: FreeSurfer's own of the same subject))",
-          s.show.references, "Page")
       .withoutOutput();
 }
 

@@ -60,26 +60,24 @@ void declare(Declaration& d, ResampleSettings& s) {
       .oneByOne("MAP")
       .inputOption("from", FileKind::Surface, "sphere with the maps' vertices", s.from)
       .require("from")
-      .option(
-          "Target",
-          Field{"to", "", "sphere in register, or fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k"},
-          s.to)
+      .category("Target")
+      .option("to", "sphere in register, or fsaverage3 ... fsaverage6, fsaverage, fs_LR-32k", s.to)
       .require("to")
-      .option("Target", Field{"template", "", "folder with fs_LR's spheres"}, s.templateFolder)
-      .option("Weights", Field{"method", "", "how maps are weighted"}, s.method)
-      .option("Weights",
-              Field{"areas", "",
-                    "surfaces whose vertex areas count, of the maps' and of the target's vertices "
-                    "(SURF,SURF; one left out: its sphere)"},
+      .option("template", "folder with fs_LR's spheres", s.templateFolder)
+      .category("Weights")
+      .option("method", "how maps are weighted", s.method)
+      .option("areas",
+              "surfaces whose vertex areas count, of the maps' and of the target's vertices "
+              "(SURF,SURF; one left out: its sphere)",
               s.areas)
       .inputOption("amounts", FileKind::VertexData,
                    "maps of amounts at vertices, such as areas and volumes: their sums stay, "
                    "whatever --method",
                    s.amounts, "Weights")
-      .option("Target",
-              Field{"space", "",
-                    "name of the space in file names, or folder of the template, where --from is "
-                    "in register with another one than the target's name says"},
+      .category("Target")
+      .option("space",
+              "name of the space in file names, or folder of the template, where --from is "
+              "in register with another one than the target's name says",
               s.space)
       .needs({"template"}, {"to=fs_LR-32k"})
       .needs({"areas"}, {"method=adaptive", "amounts"})

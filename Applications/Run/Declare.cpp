@@ -32,12 +32,9 @@ void declareRun(Declaration& d, RunSettings& s) {
                    "T2 or FLAIR of the same head: the outer border of cortex is placed by both",
                    s.t2)
       .options("Run", s.plan)
-      .option("Run",
-              Field{"resume", "", "keep steps of an earlier run into --out that are still true"},
-              s.resume)
-      .option("Run",
-              Field{"accept", "",
-                    "go on although this number is implausible, in whichever step; see segment"},
+      .category("Run")
+      .option("resume", "keep steps of an earlier run into --out that are still true", s.resume)
+      .option("accept", "go on although this number is implausible, in whichever step; see segment",
               s.accept)
       .reuseOutputIf(s.resume)
       .inPlace()

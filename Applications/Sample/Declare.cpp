@@ -33,25 +33,19 @@ void declareSample(Declaration& d, SampleSettings& s) {
       .inputOption("thickness", FileKind::Folder,
                    "output folder of explica thickness: sample its layers instead of surfaces",
                    s.thickness, "Trajectories")
-      .option(
-          "Depths",
-          Field{"depths", "",
-                "number of depths from white to pial, or a list: 0 white to 1 pial (default 0.5); "
-                "with --thickness the number of layers (default: those of its layers.nii.gz)"},
-          s.depths)
-      .option(
-          "Depths",
-          Field{"depth-kind", "", "depths are shares of the distance or of the column's volume"},
-          s.depthKind)
-      .option(
-          "Depths",
-          Field{
-              "across", "",
+      .category("Depths")
+      .option("depths",
+              "number of depths from white to pial, or a list: 0 white to 1 pial (default 0.5); "
+              "with --thickness the number of layers (default: those of its layers.nii.gz)",
+              s.depths)
+      .option("depth-kind", "depths are shares of the distance or of the column's volume",
+              s.depthKind)
+      .option("across",
               "one map of all depths: their mean or maximum, of labels the most frequent; ribbon: "
-              "mean over the volume of the faces about a vertex, as Workbench's ribbon mapping"},
-          s.across)
-      .option("Values", Field{"interpolate", "", "how values between voxel centres are made"},
-              s.interpolate)
+              "mean over the volume of the faces about a vertex, as Workbench's ribbon mapping",
+              s.across)
+      .category("Values")
+      .option("interpolate", "how values between voxel centres are made", s.interpolate)
       .inputOption("mask", FileKind::Volume,
                    "where it is 0, on the volumes' grid, nothing is known", s.mask, "Values")
       .options("Values", s.reading);

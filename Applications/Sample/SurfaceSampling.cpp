@@ -143,8 +143,7 @@ class SurfaceSampling {
   }
 
   void noteKnown(const std::vector<float>& values, std::vector<std::uint8_t>& known) {
-    constexpr std::size_t kGrain = 1 << 14;  // elements a task
-    parallelForBlocks(known.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    parallelForBlocks(known.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
       for (std::size_t frame = 0; frame < values.size(); frame += known.size()) {
         const float* at = values.data() + frame;
         for (std::size_t p = begin; p < end; ++p) known[p] &= at[p] == at[p];  // not NaN
@@ -213,8 +212,7 @@ class SurfaceSampling {
     }
     const double share = static_cast<double>(sum) / static_cast<double>(known.size());
     summary_.known.emplace_back(name, share);
-    constexpr double kFew = 0.5;
-    if (share < kFew) {
+    if (share < 0.5) {
       context_.warn(
           printed("'%s' is known at %.1f %% of the vertices only: the others lie outside the field "
                   "of view, the mask or the map",

@@ -70,13 +70,13 @@ void declareSegment(Declaration& d, SegmentSettings& s) {
                    "to_template.h5 of an earlier run on this T1 with the same template, taken "
                    "instead of registering again; how it fits is checked as ever",
                    s.templateTransform, "Head")
-      .option("Head",
-              Field{"template", "",
-                    "colin27 (default) or inia19 (a macaque without skull), both of the package "
-                    "mricron-data, a folder with T1.nii.gz, brain.nii.gz and atlas.nii.gz, or "
-                    "none"},
+      .category("Head")
+      .option("template",
+              "colin27 (default) or inia19 (a macaque without skull), both of the package "
+              "mricron-data, a folder with T1.nii.gz, brain.nii.gz and atlas.nii.gz, or "
+              "none",
               s.headTemplate)
-      .option("Head", Field{"stripped", "", "whether the skull is off already"}, s.stripped)
+      .option("stripped", "whether the skull is off already", s.stripped)
       .options("Reading", s.reading)
       .options("Tissues", s.tissue)
       .options("Hemisphere", s.hemisphere);

@@ -30,8 +30,7 @@ void refuseOtherImages(Judge& judge, const Volume<float>& image) {
   judge.require("thick-slices", contrast.thickest);
   if (contrast.spread == 0) return;
   // Fluid is many voxels in any head, vessels are few.
-  constexpr double kFluid = 0.05;
-  if (contrast.brightShare < kFluid) judge.require("bright-vessels", contrast.brightest);
+  if (contrast.brightShare < 0.05) judge.require("bright-vessels", contrast.brightest);
   judge.require("bright-fluid", contrast.skewness);
 }
 

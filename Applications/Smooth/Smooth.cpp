@@ -44,9 +44,8 @@ void declare(Declaration& d, SmoothSettings& s) {
       .require("surface")
       .options("Reading", s.reading)
       .inputOption("mask", FileKind::VertexData, "map or labels: smooth where it is not 0", s.mask)
-      .option("Smoothing",
-              Field{"fwhm", "mm", "full width at half maximum of the kernel", kAboveZero, 1e3},
-              s.fwhm)
+      .category("Smoothing")
+      .option({"fwhm", "mm", "full width at half maximum of the kernel", kAboveZero, 1e3}, s.fwhm)
       .require("fwhm")
       .output("*_fwhm-*", FileKind::VertexData, "NAME_fwhm-N: each map, in its file's format");
 }

@@ -237,17 +237,14 @@ void describe(Results& t, const GroupSummary& g) {
 }
 
 void declareGroup(Declaration& d, GroupSettings& s) {
-  d.option(
-       "Group",
-       Field{"include", "", "people who count although their run is doubted, with or without sub-"},
-       s.include)
-      .option("Group",
-              Field{"model", "",
-                    "formula as of glm, with the columns of participants.tsv: fitted to the "
-                    "smoothed thickness, into group/glm"},
+  d.category("Group")
+      .option("include", "people who count although their run is doubted, with or without sub-",
+              s.include)
+      .option("model",
+              "formula as of glm, with the columns of participants.tsv: fitted to the "
+              "smoothed thickness, into group/glm",
               s.model)
-      .option("Group", Field{"fwhm", "mm", "smoothing of the maps for --model", kAboveZero, 100},
-              s.fwhm)
+      .option({"fwhm", "mm", "smoothing of the maps for --model", kAboveZero, 100}, s.fwhm)
       .results<GroupSummary>()
       .output("group/*", FileKind::Any,
               "means, deviations and z-maps on the template, tables of people and regions")

@@ -45,13 +45,12 @@ void declare(Declaration& d, StudyHeartsSettings& s) {
                "Two participants")
       .input("DATA_DIR", FileKind::Folder, "folder with one folder a person", s.dataset)
       .argument(Field{"OUT_DIR", "", "folder of the results"}, s.out)
-      .option("Study", Field{"participant-label", "", "people to do, with or without sub-"},
-              s.participants)
+      .category("Study")
+      .option("participant-label", "people to do, with or without sub-", s.participants)
       .severalWords("participant-label")
-      .option("Study",
-              Field{"endings", "",
-                    "endings of the label volumes' names before .nii.gz, in place of _dseg, _gt, "
-                    "_label, _seg"},
+      .option("endings",
+              "endings of the label volumes' names before .nii.gz, in place of _dseg, _gt, "
+              "_label, _seg",
               s.endings)
       .defaultOut(s.out)
       .reuseOutputIf(s.reuse)

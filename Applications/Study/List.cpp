@@ -32,8 +32,9 @@ void declare(Declaration& d, StudyListSettings& s) {
       .example("explica study list study.yaml results --todo", "What is left to do")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
       .argument(Field{"OUT_DIR", "", "folder of the results; only for --todo"}, s.out)
-      .option("List", Field{"todo", "", "only subjects whose work is not settled"}, s.todo)
-      .option("List", Field{"keys", "", "the key of each subject, too"}, s.keys)
+      .category("List")
+      .option("todo", "only subjects whose work is not settled", s.todo)
+      .option("keys", "the key of each subject, too", s.keys)
       .withoutOutput();
   d.find("OUT_DIR")->required = false;
 }

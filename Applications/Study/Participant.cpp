@@ -43,10 +43,10 @@ void declare(Declaration& d, StudyParticipantSettings& s) {
                "Two subjects")
       .input("STUDY", FileKind::Any, "study file, YAML or JSON", s.study)
       .argument(Field{"OUT_DIR", "", "folder of the results"}, s.out)
-      .option("Study", Field{"participant-label", "", "subjects to do, with or without sub-"},
-              s.participants)
+      .category("Study")
+      .option("participant-label", "subjects to do, with or without sub-", s.participants)
       .severalWords("participant-label")
-      .option("Study", keepField(), s.keep)
+      .option(keepField(), s.keep)
       .withoutOutput();
 }
 

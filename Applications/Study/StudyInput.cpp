@@ -20,9 +20,9 @@ Json schemaOf(const provenance::Option& option) {
   static const std::map<std::string, const char*> types = {
       {"flag", "boolean"}, {"integer", "integer"}, {"number", "number"}, {"text", "string"}};
   Json one;
-  const std::string type = option.type();
+  const std::string type = option.type;
   if (type == "choice") {
-    one["enum"] = option.choices();
+    one["enum"] = option.choices;
   } else if (type == "point2" || type == "point3") {
     const int size = type == "point2" ? 2 : 3;
     one = {
@@ -31,8 +31,8 @@ Json schemaOf(const provenance::Option& option) {
     one["type"] = types.at(type);
   }
   const Json element = one;
-  if (option.isList()) one = {{"type", "array"}, {"items", element}};
-  if (option.isList() && element.contains("maxItems")) {
+  if (option.isList) one = {{"type", "array"}, {"items", element}};
+  if (option.isList && element.contains("maxItems")) {
     one = {{"anyOf", {element, one}}};  // one point stands for a list of one
   }
   one["description"] = option.help + (option.unit.empty() ? "" : ", in " + option.unit);

@@ -56,10 +56,10 @@ void declareVolumes(Declaration& d, SurfaceSettings& s) {
                    "T2 or FLAIR of the same head beside --image: the outer border is placed by "
                    "both; it is brought onto the image by a rigid motion",
                    s.t2)
-      .option("TissueInputs",
-              Field{"level", "",
-                    "value on the boundaries of level volumes (default: half the largest value of "
-                    "shares, 0 of distances)"},
+      .category("TissueInputs")
+      .option("level",
+              "value on the boundaries of level volumes (default: half the largest value of "
+              "shares, 0 of distances)",
               s.level);
 }
 
@@ -104,8 +104,8 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
       .inputOption("mid-surface", FileKind::Surface,
                    "its middle surface, same faces (default: half way)", s.midSurface,
                    "Given surfaces")
-      .option("Given surfaces",
-              Field{"surface-space", "", "frame of their coordinates, if the files do not say"},
+      .category("Given surfaces")
+      .option("surface-space", "frame of their coordinates, if the files do not say",
               s.surfaceSpace)
       .inputOption("atlas", FileKind::LabelVolume,
                    "labels of cortical regions in the same space: writes regions.tsv", s.atlas,
@@ -118,29 +118,26 @@ void declareSurface(Declaration& d, SurfaceSettings& s) {
                    "regions of given surfaces, vertex by vertex, instead of --atlas",
                    s.parcellation, "CortexRegions")
       .options("Reading", s.reading)
-      .option("Reading",
-              Field{"scale", "",
-                    "multiplies the lengths of the volumes' headers, for such as were scaled to a "
-                    "human brain's size"},
+      .category("Reading")
+      .option("scale",
+              "multiplies the lengths of the volumes' headers, for such as were scaled to a "
+              "human brain's size",
               s.scale)
       .options("Tissue", s.tissue)
       .options("Surface", s.surface)
-      .option(
-          "Surface",
-          Field{"sheet", "",
-                "allow open surfaces, which end in rims: where grey matter runs out of the image "
-                "(auto), always, never"},
-          s.sheet)
-      .option(
-          "Output",
-          Field{"thickness-measure", "",
-                "what comes first in thickness.shape.gii, and its means: length of the trajectory, "
-                "or the mean of the nearest distances both ways, as FreeSurfer has it"},
-          s.thicknessMeasure)
-      .option("Output",
-              Field{"freesurfer", "",
-                    "write lh.white, lh.pial, lh.thickness and so on, too, into this folder "
-                    "(within --out if relative)"},
+      .category("Surface")
+      .option("sheet",
+              "allow open surfaces, which end in rims: where grey matter runs out of the image "
+              "(auto), always, never",
+              s.sheet)
+      .category("Output")
+      .option("thickness-measure",
+              "what comes first in thickness.shape.gii, and its means: length of the trajectory, "
+              "or the mean of the nearest distances both ways, as FreeSurfer has it",
+              s.thicknessMeasure)
+      .option("freesurfer",
+              "write lh.white, lh.pial, lh.thickness and so on, too, into this folder "
+              "(within --out if relative)",
               s.freeSurfer)
       .namesOutput("freesurfer")
       .inputOption("fs-volume", FileKind::Volume,

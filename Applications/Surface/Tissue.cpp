@@ -152,7 +152,6 @@ void checkVolume(Context& context, const surface::CorticalSurfaces& made,
   const bool human = preset == LabelPreset::Aseg || preset == LabelPreset::Ribbon ||
                      preset == LabelPreset::Dhcp || preset == LabelPreset::Dhcp87;
   if (!human || made.sheet.open || !tissue.hasGrey) return;
-  constexpr double kUsual = 1100;  // ml
   const double sides = tissue.structure == "Cortex" ? 1 : 2;
   const double volume = sides * geometry::enclosedVolume(made.pial) / 1000;
   summary.cerebrumVolume = volume;
@@ -162,7 +161,7 @@ void checkVolume(Context& context, const surface::CorticalSurfaces& made,
   text << "the cerebrum holds " << volume << " ml" << (sides == 2 ? " (twice this hemisphere)" : "")
        << ", a human one 250 to 2000 ml: if the header's lengths were scaled, --scale V multiplies "
           "them ("
-       << std::cbrt(kUsual / volume) << " would make it a human's)";
+       << std::cbrt(1100 / volume) << " would make it a human's)";
   context.warn(text.str());
 }
 

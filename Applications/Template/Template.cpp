@@ -47,9 +47,8 @@ void declare(Declaration& d, TemplateSettings& s) {
       .input("PEOPLE", FileKind::Folder,
              "folders of explica run, FreeSurfer subjects, or a study's OUT_DIR with all its runs",
              s.people)
-      .option("Template",
-              Field{"density", "", "its vertices: fsaverage3 ... fsaverage6 or fsaverage"},
-              s.density)
+      .category("Template")
+      .option("density", "its vertices: fsaverage3 ... fsaverage6 or fsaverage", s.density)
       .options("Template", s.average)
       .output("hemi-*_sphere.surf.gii", FileKind::Surface, "fsaverage's sphere of that density")
       .output("hemi-*_sulc.shape.gii", FileKind::VertexData, "mean sulcal depth")

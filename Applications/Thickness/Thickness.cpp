@@ -73,24 +73,22 @@ void declare(Declaration& d, ThicknessSettings& s) {
                    "scalar volume whose level --level is the inner boundary", s.innerLevel)
       .inputOption("outer-level", FileKind::Volume,
                    "scalar volume whose level --level is the outer boundary", s.outerLevel)
-      .option("Inputs", Field{"level", "", "value of the level sets on the boundary"},
-              s.level.level)
-      .option("Inputs", Field{"level-inside", "", "side of the level sets that is enclosed"},
-              s.level.inside)
+      .category("Inputs")
+      .option("level", "value of the level sets on the boundary", s.level.level)
+      .option("level-inside", "side of the level sets that is enclosed", s.level.inside)
       .options("Reading", s.reading)
       .options("Labels", s.roles)
       .options("Boundary", s.measurement.annulus)
+      .category("Boundary")
       .option(
-          "Boundary",
-          Field{
-              "sulci", "",
-              R"(what to do where the banks of a sulcus touch (default: recover; ignore with --open-ends, which is for hearts, and with --per-slice where the inner region is not folded as a cortex's))"},
+          "sulci",
+          R"(what to do where the banks of a sulcus touch (default: recover; ignore with --open-ends, which is for hearts, and with --per-slice where the inner region is not folded as a cortex's))",
           s.measurement.sulci)
       .options("Boundary", s.measurement.sulcus)
       .options("Correspondences", s.measurement.correspondence)
       .options("Layers", s.measurement.layers)
-      .option("Layers",
-              Field{"cells", "", "write an anatomical grid with this many cells across", 1, 1000},
+      .category("Layers")
+      .option({"cells", "", "write an anatomical grid with this many cells across", 1, 1000},
               s.measurement.grid)
       .excludes("inner-level", {"inner", "tissue", "outer"})
       .needs({"level", "level-inside"}, {"inner-level"});

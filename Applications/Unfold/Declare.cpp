@@ -27,13 +27,12 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
                    "the region is where this label, or one of several, is not 0; with --above, "
                    "where this map is above that",
                    s.labels, "Region")
-      .option("Region",
-              Field{"label-key", "",
-                    "the region is where --label has one of these keys or, of an annotation, "
-                    "names (K,K,... or repeated)"},
+      .category("Region")
+      .option("label-key",
+              "the region is where --label has one of these keys or, of an annotation, "
+              "names (K,K,... or repeated)",
               s.labelKeys)
-      .option("Region", Field{"above", "", "value beyond which the map --label is in the region"},
-              s.above)
+      .option("above", "value beyond which the map --label is in the region", s.above)
       .excludes("label", {"center", "vertex", "radius", "metric", "cone"})
       .excludes("label-key", {"above"})
       .excludes("center", {"vertex"})
@@ -41,15 +40,14 @@ void declareUnfold(Declaration& d, UnfoldSettings& s) {
       .needs({"label-key"}, {"label"})
       .needs({"above"}, {"label"})
       .needs({"distance"}, {"direction"})
-      .option("Unfolding",
-              Field{"repair", "",
-                    "remove self-intersections of region and collar first (of all the surface, if "
-                    "given explicitly); distortion is measured against the repaired surface"},
+      .category("Unfolding")
+      .option("repair",
+              "remove self-intersections of region and collar first (of all the surface, if "
+              "given explicitly); distortion is measured against the repaired surface",
               s.repair)
       .options("Unfolding", s.unfold)
       .needs({"knot-weight"}, {"knot"})
-      .option("Unfolding", Field{"resume", "", "continue the run whose outputs are in --out"},
-              s.resume)
+      .option("resume", "continue the run whose outputs are in --out", s.resume)
       .reuseOutputIf(s.resume)
       .output("unfolded.surf.gii", FileKind::Surface, "the surface with its region unfolded")
       .output(kReferenceFile, FileKind::Surface,

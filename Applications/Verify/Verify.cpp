@@ -25,12 +25,11 @@ void declare(Declaration& d, VerifySettings& s) {
       .example("explica verify shell/provenance.json", "Is the shell still what was made?")
       .input("PROVENANCE", FileKind::Any, "a provenance.json, or the folder that holds it",
              s.record)
-      .option("Verification",
-              Field{"deep", "", "follow the records of the inputs, back to the first"}, s.deep)
-      .option("Verification",
-              Field{"prov-json", "",
-                    "print the record as W3C PROV-JSON instead of verifying; with --deep those of "
-                    "its inputs too"},
+      .category("Verification")
+      .option("deep", "follow the records of the inputs, back to the first", s.deep)
+      .option("prov-json",
+              "print the record as W3C PROV-JSON instead of verifying; with --deep those of "
+              "its inputs too",
               s.provJson)
       .withoutOutput();
 }

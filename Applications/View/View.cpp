@@ -68,34 +68,28 @@ void declare(Declaration& d, ViewSettings& s) {
              "`sample`",
              s.files)
       .oneByOne("FILE")
-      .option("Picture", Field{"screenshot", "", "PNG file to write"}, s.screenshot)
-      .option("Picture",
-              Field{"film", "",
-                    "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
-                    "ffmpeg is installed; 800 x 600 pixels if --width and --height do not say"},
+      .category("Picture")
+      .option("screenshot", "PNG file to write", s.screenshot)
+      .option("film",
+              "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
+              "ffmpeg is installed; 800 x 600 pixels if --width and --height do not say",
               s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
-      .option("Picture", Field{"map-name", "", "which of the map file's maps (default: the first)"},
-              s.mapName)
+      .option("map-name", "which of the map file's maps (default: the first)", s.mapName)
       .inputOption("labels", FileKind::VertexLabel, "per-vertex labels to colour the surface by",
                    s.labels)
       .inputOption("region", FileKind::VertexLabel, "labels: vertices of label 0 are drawn paler",
                    s.region)
-      .option("Picture", Field{"views", "", "sides to look from (default: left,right)"}, s.views)
-      .option("Picture",
-              Field{"direction", "",
-                    "look from this side instead: a direction from the surface to the eye"},
+      .option("views", "sides to look from (default: left,right)", s.views)
+      .option("direction", "look from this side instead: a direction from the surface to the eye",
               s.direction)
-      .option(
-          "Picture",
-          Field{"focus", "", "fill the picture with the --region, a film with the unfolded patch"},
-          s.focus)
-      .option("Picture", Field{"colours", "", "colour map (default: by the values)"}, s.colours)
-      .option("Picture", Field{"range", "", "values of the first and last colour"}, s.range)
-      .option("Picture", Field{"columns", "", "views in a row", 0, 100}, s.columns)
-      .option("Picture", Field{"slices", "", "slices of a volume in each direction", 0, 1000},
-              s.slices)
-      .option("Picture", Field{"fps", "", "frames a second of a film"}, s.framesPerSecond)
+      .option("focus", "fill the picture with the --region, a film with the unfolded patch",
+              s.focus)
+      .option("colours", "colour map (default: by the values)", s.colours)
+      .option("range", "values of the first and last colour", s.range)
+      .option({"columns", "", "views in a row", 0, 100}, s.columns)
+      .option({"slices", "", "slices of a volume in each direction", 0, 1000}, s.slices)
+      .option("fps", "frames a second of a film", s.framesPerSecond)
       .options("Picture", s.picture)
       .options("Window", s.window)
       .options("Reading", s.reading)

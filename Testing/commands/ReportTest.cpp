@@ -227,7 +227,12 @@ TEST(Report, OfSamplesShowsMapsAndProfiles) {
   ASSERT_EQ(explica({"report", folder / "s"}).exitCode, 0);
   const std::string words = wordsOf(readText(folder / "s/report.html"));
   EXPECT_NE(words.find("Known of t1"), std::string::npos);
-  EXPECT_EQ(countOf(words, "class='view'"), 6u);  // three depths from two sides
+  const std::string page = readText(folder / "s/report.html");
+  EXPECT_NE(page.find("data-title=\"middle surface\""), std::string::npos);
+  for (const char* depth : {"0", "0.5", "1"}) {
+    const std::string map = std::string(R"({"name":"t1, depth )") + depth + "\"";
+    EXPECT_EQ(countOf(page, map), 1u) << map;
+  }
   EXPECT_EQ(countOf(words, "<svg class='chart'"), 2u) << "all, and one region";
   EXPECT_EQ(countOf(words, "fill-opacity"), 2u) << "each with its spread";
   EXPECT_NE(words.find(">A1<"), std::string::npos);
@@ -271,9 +276,9 @@ TEST(Report, ShowsGivenMapsOnTheUnfolding) {
   const auto report = explica({"report", folder / "u", "--map", folder / "height.shape.gii",
                                "--map", folder / "short.shape.gii"});
   ASSERT_EQ(report.exitCode, 0) << report;
-  const std::string words = wordsOf(readText(folder / "u/report.html"));
-  EXPECT_NE(words.find("height on the patch before and after"), std::string::npos);
-  EXPECT_EQ(words.find("short on the patch"), std::string::npos);
+  const std::string page = readText(folder / "u/report.html");
+  EXPECT_NE(page.find(R"({"name":"height")"), std::string::npos);
+  EXPECT_EQ(page.find(R"({"name":"short")"), std::string::npos);
 }
 
 /// The folder of `explica surface` on a phantom cortex of so many voxels.
@@ -311,26 +316,6 @@ TEST(Report, MorphsASurfaceFromWhiteToFlatAndOpensThePatchOnIt) {
       runProgram({"/usr/bin/python3", EXPLICA_SOURCE_DIR "/Testing/commands/report_shapes.py",
                   folder / "r/report.html"});
   EXPECT_EQ(browser.exitCode, 0) << browser;
-}
-
-TEST(Report, DrawsTheThicknessOfOthersBehind) {
-  TemporaryFolder folder;
-  makeSurface(folder, "40");
-  makeSurface(folder, "44");
-  ASSERT_EQ(explica({"report", folder / "s40"}).exitCode, 0);
-  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 0u);
-  const auto one = explica({"report", folder / "s40", "--reference", folder / "s44"});
-  ASSERT_EQ(one.exitCode, 0) << one;
-  EXPECT_EQ(countOf(readText(folder / "s40/report.html"), "class='behind'"), 2u)
-      << "the line, and its key";
-  EXPECT_NE(readText(folder / "s40/report.html").find("s44, median"), std::string::npos);
-  const auto many = explica({"report", folder / "s40", "--reference", folder.path().string()});
-  ASSERT_EQ(many.exitCode, 0) << many;
-  EXPECT_NE(readText(folder / "s40/report.html").find("2 hemispheres of the reference, median"),
-            std::string::npos);
-  const auto none = explica({"report", folder / "s40", "--reference", folder / "p40"});
-  EXPECT_EQ(none.exitCode, 2) << none;
-  EXPECT_NE(none.err.find("holds no thickness"), std::string::npos) << none;
 }
 
 TEST(Report, SaysWhatIsWrongOnceAndNamesCommandsNotFolders) {

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "DescriptorWords.h"
-
+#include "Explica/Application/Command.h"
+#include "Explica/Application/Descriptors.h"
 #include "Explica/Core/Text.h"
+#include "Parse.h"
+#include "Wording.h"
 
 #include <algorithm>
 #include <map>
@@ -15,68 +17,78 @@ std::string quotedShell(const std::string& text) {
   return "'" + replaced(text, "'", "'\\''") + "'";
 }
 
-/// Verbs in order, and the kinds of those that have two words.
-struct Verbs {
-  std::vector<std::string> names;
-  std::map<std::string, std::string> kinds;
+/// A word and its meaning, as zsh's _describe takes them.
+std::string described(const std::string& word, const std::string& meaning) {
+  return quotedShell(word + ":" + replaced(meaning, ":", "\\:"));
+}
+
+/// A verb, and the kinds of one that has two words: each with its synopsis.
+struct Verb {
+  std::string name, synopsis;
+  std::vector<std::pair<std::string, std::string>> kinds;
 };
 
-Verbs verbsOf(const Json& commands) {
-  Verbs verbs;
-  for (const Json& command : commands) {
-    const std::string name = word(command["command"]);
-    const std::size_t space = name.find(' ');
-    const std::string verb = name.substr(0, space);
-    if (verbs.names.empty() || verbs.names.back() != verb) verbs.names.push_back(verb);
-    if (space != std::string::npos) verbs.kinds[verb] += " " + name.substr(space + 1);
+std::vector<Verb> verbs() {
+  std::vector<Verb> all;
+  for (const Command& command : allCommands()) {
+    const std::size_t space = command.name().find(' ');
+    const std::string name = command.name().substr(0, space);
+    const std::string synopsis = command.begin().declaration.synopsisText;
+    if (all.empty() || all.back().name != name) all.push_back({name, synopsis, {}});
+    if (space == std::string::npos) continue;
+    all.back().kinds.emplace_back(command.name().substr(space + 1), synopsis);
   }
-  return verbs;
+  return all;
 }
 
 /// What may follow an option, as the shell function's `values`: words, or -f files, or -d folders.
-std::string bashValues(const Json& p) {
-  if (!p["choices"].empty()) {
-    std::string words;
-    for (const Json& choice : p["choices"]) words += " " + word(choice);
-    return "-W" + words;
-  }
-  if (takesFolder(p) || p["name"] == "out") return "-d";
-  const bool textOrFile = takesFile(p) || (p["type"] == "text" && p["placeholder"] != "N");
-  return textOrFile ? "-f" : "-W";
+std::string bashValues(const Parameter& p) {
+  if (!p.option.choices.empty()) return "-W " + joined(p.option.choices, " ");
+  if (p.file == FileKind::Folder || p.option.name == "out") return "-d";
+  return p.file || p.option.type == "text" ? "-f" : "-W";
 }
 
 /// The case of one command: its options, those shown at first, and what may follow each.
-std::string bashCase(const Json& command) {
-  std::string first, options, files = "";
+std::string bashCase(const Declaration& d) {
+  CommonOptions common;
+  std::vector<std::string> first, options;
+  bool takesFiles = false;
   std::map<std::string, std::vector<std::string>> followed;  // options by what may follow them
-  for (const Json& p : command["parameters"]) {
-    if (p["positional"]) {
-      if (!p["file"].is_null() || p["name"] == "OUT_DIR") files = "1";
+  for (const Parameter& p : allParameters(d, common)) {
+    if (p.positional) {
+      takesFiles = takesFiles || p.file || p.option.name == "OUT_DIR";
       continue;
     }
-    const std::string option = "--" + word(p["name"]);
-    options += " " + option;
-    if (p["first"]) first += " " + option;
-    if (!isFlag(p)) followed[bashValues(p)].push_back(option);
+    options.push_back(dashed(p));
+    if (shownAtFirst(d, p)) first.push_back(dashed(p));
+    if (!p.option.isFlag()) followed[bashValues(p)].push_back(dashed(p));
   }
-  std::string text =
-      "    " + quotedShell(word(command["command"])) + ")\n      files=" + quotedShell(files) +
-      "\n      first=" + quotedShell(first.substr(first.empty() ? 0 : 1)) +
-      "\n      options=" + quotedShell(options.substr(1) + " --help --help-all --version") + "\n";
-  if (!followed.empty()) {
-    text += "      case $previous in\n";
-    for (const auto& [values, names] : followed) {
-      text += "        " + joined(names, "|") + ") values=" + quotedShell(values) + " ;;\n";
-    }
-    text += "      esac\n";
+  std::string text = "    " + quotedShell(d.name) + ")\n      files='" + (takesFiles ? "1" : "") +
+                     "'\n      first=" + quotedShell(joined(first, " ")) + "\n      options=" +
+                     quotedShell(joined(options, " ") + " --help --help-all --version") + "\n";
+  if (!followed.empty()) text += "      case $previous in\n";
+  for (const auto& [values, names] : followed) {
+    text += "        " + joined(names, "|") + ") values=" + quotedShell(values) + " ;;\n";
   }
-  return text + "      ;;\n";
+  return text + (followed.empty() ? "" : "      esac\n") + "      ;;\n";
+}
+
+/// One option for zsh's _arguments.
+std::string zshOption(const Parameter& p) {
+  const std::string help = replaced(replaced(rightColumn(p), "[", "("), "]", ")");
+  std::string entry = dashed(p) + "[" + replaced(help, ":", "\\:") + "]";
+  if (p.option.isFlag()) return quotedShell(entry);
+  const std::string& name = p.option.name;
+  const bool takesFile = p.file || name == "out" || name == "config" || name == "log";
+  const std::string action = !p.option.choices.empty() ? "(" + joined(p.option.choices, " ") + ")"
+                             : takesFile               ? "_files"
+                                                       : " ";
+  return quotedShell(entry + ":" + name + ":" + action);
 }
 
 }  // namespace
 
-std::string bashCompletionOf(const Json& commands) {
-  const Verbs verbs = verbsOf(commands);
+std::string bashCompletion() {
   std::string text =
       R"(# bash completion of explica, generated from the commands' own declarations.
 _explica_reply() { mapfile -t COMPREPLY < <(compgen "$@" -- "$word"); }
@@ -85,10 +97,14 @@ _explica() {
   local command=${COMP_WORDS[1]} kinds='' first='' options='' files='' values=''
   COMPREPLY=()
 )";
+  const std::vector<Verb> all = verbs();
   text += "  if [[ $COMP_CWORD == 1 ]]; then\n    _explica_reply -W " +
-          quotedShell(joined(verbs.names, " ")) + "\n    return\n  fi\n  case $command in\n";
-  for (const auto& [verb, kinds] : verbs.kinds) {
-    text += "    " + verb + ") kinds=" + quotedShell(kinds.substr(1)) + " ;;\n";
+          quotedShell(joined(all, " ", [](const Verb& verb) { return verb.name; })) +
+          "\n    return\n  fi\n  case $command in\n";
+  for (const Verb& verb : all) {
+    if (verb.kinds.empty()) continue;
+    const auto kinds = joined(verb.kinds, " ", [](const auto& kind) { return kind.first; });
+    text += "    " + verb.name + ") kinds=" + quotedShell(kinds) + " ;;\n";
   }
   text += R"(  esac
   if [[ -n $kinds ]]; then
@@ -100,7 +116,7 @@ _explica() {
   fi
   case $command in
 )";
-  for (const Json& command : commands) text += bashCase(command);
+  for (const Command& command : allCommands()) text += bashCase(command.begin().declaration);
   return text + R"(  esac
   case $values in
     -W*) _explica_reply -W "${values#-W}"; return ;;
@@ -126,54 +142,30 @@ complete -F _explica explica
 )";
 }
 
-std::string zshCompletionOf(const Json& commands) {
-  std::vector<std::string> verbs;
-  std::map<std::string, std::string> kindsOf;  // of a verb of two words: entries for _describe
-  std::string described;
-  for (const Json& command : commands) {
-    const std::string name = word(command["command"]);
-    const std::size_t space = name.find(' ');
-    const std::string verb = name.substr(0, space);
-    const std::string synopsis = replaced(word(command["synopsis"]), ":", "\\:");
-    if (space != std::string::npos) {
-      kindsOf[verb] += " " + quotedShell(name.substr(space + 1) + ":" + synopsis);
-    }
-    if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end()) continue;
-    verbs.push_back(verb);
-    described += "  " + quotedShell(verb + ":" + synopsis) + "\n";
-  }
+std::string zshCompletion() {
+  const std::vector<Verb> all = verbs();
   std::string text =
       "#compdef explica\n# zsh completion, generated from the commands' own declarations.\n"
-      "local -a commands kinds\ncommands=(\n" +
-      described +
+      "local -a commands kinds\ncommands=(\n";
+  for (const Verb& verb : all) text += "  " + described(verb.name, verb.synopsis) + "\n";
+  text +=
       ")\nif (( CURRENT == 2 )); then\n  _describe command commands\n  return\nfi\n"
       "local name=${words[2]}\n";
-  for (const auto& [verb, kinds] : kindsOf) {
-    text += "if [[ $name == " + verb + " ]]; then\n  kinds=(" + kinds.substr(1) +
+  for (const Verb& verb : all) {
+    if (verb.kinds.empty()) continue;
+    const auto kinds = joined(verb.kinds, " ",
+                              [](const auto& kind) { return described(kind.first, kind.second); });
+    text += "if [[ $name == " + verb.name + " ]]; then\n  kinds=(" + kinds +
             ")\n  if (( CURRENT == 3 )); then\n    _describe kind kinds\n    return\n  fi\n"
             "  name=\"$name ${words[3]}\"\nfi\n";
   }
   text += "case $name in\n";
-  for (const Json& command : commands) {
-    text += "  " + quotedShell(word(command["command"])) + ")\n    _arguments \\\n";
-    for (const Json& p : command["parameters"]) {
-      if (p["positional"]) continue;
-      std::string help = replaced(replaced(replaced(helpOf(p), "[", "("), "]", ")"), ":", "\\:");
-      std::string entry = "--" + word(p["name"]) + "[" + help + "]";
-      if (!isFlag(p)) {
-        std::string action = "_files";
-        if (!p["choices"].empty()) {
-          action = "(";
-          for (const Json& choice : p["choices"])
-            action += (action.size() > 1 ? " " : "") + word(choice);
-          action += ")";
-        } else if (p["file"].is_null() && p["name"] != "out" && p["name"] != "config" &&
-                   p["name"] != "log") {
-          action = " ";
-        }
-        entry += ":" + word(p["name"]) + ":" + action;
-      }
-      text += "      " + quotedShell(entry) + " \\\n";
+  for (const Command& command : allCommands()) {
+    CommonOptions common;
+    const Invocation invocation = command.begin();
+    text += "  " + quotedShell(command.name()) + ")\n    _arguments \\\n";
+    for (const Parameter& p : allParameters(invocation.declaration, common)) {
+      if (!p.positional) text += "      " + zshOption(p) + " \\\n";
     }
     text += "      '*:file:_files'\n    ;;\n";
   }

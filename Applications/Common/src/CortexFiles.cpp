@@ -109,8 +109,8 @@ void declareCortex(Declaration& d, CortexFiles& files, const std::string& group)
                 "folder with the white and pial surface, named as by explica surface, FreeSurfer, "
                 "fMRIPrep, the HCP or pycortex",
                 files.folder, group)
-      .option(group, Field{"hemisphere", "", "L or R, where the folder holds both"},
-              files.hemisphere)
+      .category(group)
+      .option("hemisphere", "L or R, where the folder holds both", files.hemisphere)
       .inputOption("white", FileKind::Surface, "white surface", files.white, group)
       .inputOption("pial", FileKind::Surface, "its pial surface, same faces", files.pial, group)
       .excludes("surfaces", {"white", "pial"})
@@ -155,7 +155,8 @@ void declarePlace(Declaration& d, VolumePlace& place, const std::string& group) 
                 "transform from the surface to the volumes: 4 x 4 matrix as text (RAS mm), ITK "
                 "(text, .mat, .h5), FreeSurfer LTA or register.dat, pycortex xfm",
                 place.file, group)
-      .option(group, Field{"to-volume-sense", "", "which way the transform is taken"}, place.sense)
+      .category(group)
+      .option("to-volume-sense", "which way the transform is taken", place.sense)
       .needs({"to-volume-sense"}, {"to-volume"});
 }
 

@@ -14,16 +14,6 @@ namespace explica::app {
 
 using provenance::Json;
 
-namespace {
-
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
-}  // namespace
-
 Json describeJson(const Declaration& d) {
   Json json = Json::object();
   json["command"] = d.name;
@@ -45,9 +35,9 @@ Json describeJson(const Declaration& d) {
     entry["name"] = p.option.name;
     entry["positional"] = p.positional;
     entry["required"] = p.required;
-    entry["type"] = p.option.type();
-    entry["list"] = p.option.isList();
-    entry["optional"] = p.option.isOptional();
+    entry["type"] = p.option.type;
+    entry["list"] = p.option.isList;
+    entry["optional"] = p.option.isOptional;
     entry["unit"] = p.option.unit;
     const bool above = p.option.least == kAboveZero;
     entry["above"] = above ? Json(0) : Json(nullptr);
@@ -62,10 +52,10 @@ Json describeJson(const Declaration& d) {
     entry["of_another"] = p.ofAnother != nullptr;
     entry["excludes"] = p.excludes;
     entry["needs"] = p.needs;
-    entry["choices"] = p.option.choices();
+    entry["choices"] = p.option.choices;
     entry["default"] = p.positional ? Json(nullptr) : provenance::valueOf(p.option);
     entry["first"] = shownAtFirst(d, p);
-    entry["placeholder"] = p.positional ? upper(p.option.name) : placeholder(p);
+    entry["placeholder"] = p.positional ? upperCase(p.option.name) : placeholder(p);
     json["parameters"].push_back(entry);
   }
   json["writes_folder"] = d.writesOutput;
@@ -84,6 +74,14 @@ Json describeJson(const Declaration& d) {
     json["results"].push_back(entry);
   }
   return json;
+}
+
+Json describeAllCommands() {
+  Json all = Json::array();
+  for (const Command& command : allCommands()) {
+    all.push_back(describeJson(command.begin().declaration));
+  }
+  return all;
 }
 
 }  // namespace explica::app

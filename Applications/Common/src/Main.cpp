@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
-#include "Explica/Application/Descriptors.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Software.h"
@@ -23,15 +22,6 @@ namespace explica::app {
 namespace {
 
 using provenance::Json;
-
-/// Commands whose names start with `verb `: the kinds of a verb.
-std::vector<const Command*> kindsOf(const std::string& verb) {
-  std::vector<const Command*> kinds;
-  for (const Command& command : allCommands()) {
-    if (command.name().rfind(verb + " ", 0) == 0) kinds.push_back(&command);
-  }
-  return kinds;
-}
 
 bool has(const std::vector<std::string>& words, const std::string& wanted) {
   const auto end = std::find(words.begin(), words.end(), "--");
@@ -192,6 +182,14 @@ int runCommandLine(std::vector<std::string> words, const std::vector<std::string
 }
 
 }  // namespace
+
+std::vector<const Command*> kindsOf(std::string_view verb) {
+  std::vector<const Command*> kinds;
+  for (const Command& command : allCommands()) {
+    if (command.name().starts_with(std::string(verb) + " ")) kinds.push_back(&command);
+  }
+  return kinds;
+}
 
 const Command* findCommand(std::string_view name) {
   for (const Command& command : allCommands()) {

@@ -74,7 +74,7 @@ bool filesMeet(const Declaration& declaration) {
   int files = 0;
   for (const Parameter& p : declaration.parameters) {
     if (!isSurface(&p) && !isVertexData(&p) && !p.oneByOne) continue;
-    files += p.option.isList() && !p.oneByOne ? 2 : 1;
+    files += p.option.isList && !p.oneByOne ? 2 : 1;
   }
   return files > 1;
 }

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using provenance::Json;
 
 constexpr const char* kLockName = ".explica-lock";
-constexpr auto kHeartbeat = std::chrono::seconds(30);
 
 [[noreturn]] void cannot(const std::string& what, const fs::path& path, const std::string& cause) {
   throw EnvironmentError(path.string() + ": " + what + " (" + cause + ")");
@@ -41,20 +40,17 @@ void removeRecorded(const fs::path& folder, const std::vector<std::string>& keep
   try {
     const Json earlier = provenance::readRecord(record);
     fs::remove(record);
-    const Json& varying = earlier["execution"]["varying_outputs"];
-    for (const Json* outputs : {&earlier["outputs"], &varying}) {
-      for (const Json& output : *outputs) {
-        const std::string name = output["path"];
-        const auto own = provenance::ownFile(folder, name);
-        if (!own) continue;
-        const fs::path& path = *own;
-        if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
-        const bool ours = output.contains("sha256") && fs::is_regular_file(path, ignored) &&
-                          provenance::digestOf(path).sha256 == output["sha256"];
-        if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
-        fs::remove(path);
-        emptied.insert(path.parent_path());
-      }
+    for (const Json& output : provenance::hashedOutputs(earlier)) {
+      const std::string name = output["path"];
+      const auto own = provenance::ownFile(folder, name);
+      if (!own) continue;
+      const fs::path& path = *own;
+      if (path != record && path.filename() == provenance::kRecordName) continue;  // a step's own
+      const bool ours = fs::is_regular_file(path, ignored) &&
+                        provenance::digestOf(path).sha256 == output["sha256"];
+      if (!ours || std::find(keep.begin(), keep.end(), name) != keep.end()) continue;
+      fs::remove(path);
+      emptied.insert(path.parent_path());
     }
   } catch (const IOError&) {
     fs::remove(record, ignored);  // damaged: it must not describe the new files
@@ -164,7 +160,7 @@ void OutputFolder::acquireLock(const OutputRules& rules,
       }
       heartbeat_ = std::thread([this] {
         std::unique_lock<std::mutex> guard(mutex_);
-        while (!wake_.wait_for(guard, kHeartbeat, [this] { return stopping_; })) {
+        while (!wake_.wait_for(guard, std::chrono::seconds(30), [this] { return stopping_; })) {
           std::error_code ignored;
           fs::last_write_time(lock_, fs::file_time_type::clock::now(), ignored);
         }

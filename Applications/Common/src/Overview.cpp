@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // `explica --help`: the commands by task.  A new command is named in one of the groups.
 
-#include "Explica/Application/Command.h"
+#include "Explica/Core/Text.h"
 #include "Parse.h"
 #include "Wording.h"
 
-#include <algorithm>
 #include <array>
 #include <sstream>
 
@@ -36,38 +35,10 @@ const std::array kTasks = {
 };
 
 /// "cortex, shell" of phantom cortex and phantom shell.
-std::string kindsOf(std::string_view verb) {
-  std::string kinds;
-  for (const Command& command : allCommands()) {
-    if (!command.name().starts_with(std::string(verb) + " ")) continue;
-    kinds += (kinds.empty() ? "" : ", ") + command.name().substr(verb.size() + 1);
-  }
-  return kinds;
-}
-
-/// The commands that no task names.
-std::vector<std::string_view> others() {
-  std::vector<std::string_view> names;
-  for (const Command& command : allCommands()) {
-    const bool listed = std::any_of(kTasks.begin(), kTasks.end(), [&](const Task& task) {
-      return std::any_of(task.commands.begin(), task.commands.end(), [&](std::string_view name) {
-        return command.name() == name || command.name().starts_with(std::string(name) + " ");
-      });
-    });
-    if (!listed) names.push_back(command.name());
-  }
-  return names;
-}
-
-void list(std::ostringstream& out, const Task& task) {
-  out << '\n' << task.title << '\n';
-  for (const std::string_view name : task.commands) {
-    if (const Command* command = findCommand(name)) {
-      row(out, command->name(), command->begin().declaration.synopsisText);
-    } else if (const std::string kinds = kindsOf(name); !kinds.empty()) {
-      row(out, std::string(name) + " KIND", "generated data of these kinds: " + kinds);
-    }
-  }
+std::string wordsOf(const std::vector<const Command*>& kinds) {
+  return joined(kinds, ", ", [](const Command* kind) {
+    return kind->name().substr(kind->name().find(' ') + 1);
+  });
 }
 
 }  // namespace
@@ -76,11 +47,18 @@ std::string overviewText() {
   std::ostringstream out;
   out << "Explica measures layered tissue, such as the cortex or the wall of the heart, and "
          "unfolds it.\n\nUsage: explica COMMAND [arguments] [options]\n";
-  for (const Task& task : kTasks) list(out, task);
-  if (const auto left = others(); !left.empty()) list(out, {"Other", left});
-  out << "\nexplica COMMAND --help says more, with an example.  Exit codes: 0 done, 1 usage, 2 bad "
-         "input,\n3 ended before its goal or to be checked (results are there and marked), 4 "
-         "environment.\n";
+  for (const Task& task : kTasks) {
+    out << '\n' << task.title << '\n';
+    for (const std::string_view name : task.commands) {
+      if (const Command* command = findCommand(name)) {
+        row(out, command->name(), command->begin().declaration.synopsisText);
+      } else if (const auto kinds = kindsOf(name); !kinds.empty()) {
+        row(out, std::string(name) + " KIND", "generated data of these kinds: " + wordsOf(kinds));
+      }
+    }
+  }
+  out << '\n';
+  wrap(out, "explica COMMAND --help says more, with an example.  " + exitCodesText());
   return out.str();
 }
 

@@ -31,11 +31,10 @@ struct Words {
 
 /// ": files are given by --left, --right" of a command that takes none by its place; else nothing.
 std::string optionsThatTakeFiles(const Declaration& declaration) {
-  constexpr std::size_t kNamed = 3;
   std::vector<std::string> names;
   for (const Parameter& p : declaration.parameters) {
     if (p.positional) return {};
-    if (p.file && names.size() < kNamed) names.push_back("--" + p.option.name);
+    if (p.file && names.size() < 3) names.push_back("--" + p.option.name);
   }
   return names.empty() ? "" : ": files are given by " + joined(names, ", ");
 }
@@ -79,10 +78,10 @@ void refuseNumbersBetweenSpaces(const std::vector<Parameter*>& parameters,
       return !p->positional && words[w] == "--" + p->option.name;
     });
     if (found == parameters.end() || (*found)->severalWords) continue;
-    const std::string type = (*found)->option.type();
+    const std::string type = (*found)->option.type;
     const bool point = type == "point2" || type == "point3";
     const bool numbers = type == "integer" || type == "number";
-    if (!point && !((*found)->option.isList() && numbers)) continue;
+    if (!point && !((*found)->option.isList && numbers)) continue;
     std::string joined;
     std::size_t count = 0;
     for (std::size_t n = w + 1; n < words.size() && looksLikeNumber(words[n]); ++n, ++count) {
@@ -178,12 +177,12 @@ std::set<std::string> parseWords(Declaration& declaration, CommonOptions& common
       continue;
     }
     binding.handle = parser.add_option(dashed(*all[i]), binding.values);
-    if (option.isList() && (all[i]->positional || all[i]->severalWords)) {
+    if (option.isList && (all[i]->positional || all[i]->severalWords)) {
       binding.handle->expected(1, 1 << 20);
     } else {
       binding.handle->expected(1)->allow_extra_args(false);
-      binding.handle->multi_option_policy(option.isList() ? CLI::MultiOptionPolicy::TakeAll
-                                                          : CLI::MultiOptionPolicy::Throw);
+      binding.handle->multi_option_policy(option.isList ? CLI::MultiOptionPolicy::TakeAll
+                                                        : CLI::MultiOptionPolicy::Throw);
     }
   }
 

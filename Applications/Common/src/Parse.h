@@ -42,6 +42,9 @@ void refuseIgnored(const Declaration& declaration, const std::set<std::string>& 
 /// What an option needs to have an effect: "--label or --method thesis"; empty if nothing.
 [[nodiscard]] std::string needsText(const Declaration& declaration, const Parameter& parameter);
 
+/// Commands whose names start with `verb `: the kinds of a verb.
+[[nodiscard]] std::vector<const Command*> kindsOf(std::string_view verb);
+
 /// The text of `explica --help`: the commands by task.
 [[nodiscard]] std::string overviewText();
 /// The text of --help: what goes in and out, the options that most people need, an example.
@@ -53,6 +56,8 @@ void refuseIgnored(const Declaration& declaration, const std::set<std::string>& 
 
 /// The whole declaration as JSON, from which reference pages and descriptors are made.
 [[nodiscard]] provenance::Json describeJson(const Declaration& declaration);
+/// All of them, in the order of their names.
+[[nodiscard]] provenance::Json describeAllCommands();
 
 /// Applications/<Name>/README.md.
 [[nodiscard]] std::string referencePage(const Declaration& declaration);

@@ -15,7 +15,7 @@ void declareAccept(Declaration& d, std::vector<std::string>& accepted) {
       "go on although this number is implausible; may be repeated: " +
       joined(segmentation::limits(), ", ", [](const auto& limit) { return limit.name; }) +
       "; or although files are of two hemispheres (hemisphere) or meshes (mesh)";
-  d.option("Plausibility", Field{"accept", "", help}, accepted);
+  d.category("Plausibility").option("accept", help, accepted);
 }
 
 Judge::Judge(Context& context, std::vector<std::string> accepted)

@@ -14,17 +14,14 @@ namespace explica::app {
 
 void declarePolygonReading(Declaration& d, PolygonReading& r) {
   d.options("Reading", r.volume)
-      .option("Contour", Field{"label-key", "", "take the contour of this label of an image"},
-              r.label)
-      .option("Contour",
-              Field{"slice", "", "slice along the third axis; default: where the label is largest",
-                    0, 1e6},
-              r.slice)
-      .option("Contour", Field{"contour", "", "which contour, by area, 0 the largest", 0, 1e6},
-              r.contour)
-      .option("Contour",
-              Field{"edges", "", "resample the contour to this many equal edges", 0, 1e7}, r.edges)
-      .option("Contour", Field{"smooth", "voxels", "Gaussian that anti-aliases the label's mask"},
+      .category("Contour")
+      .option("label-key", "take the contour of this label of an image", r.label)
+      .option(
+          {"slice", "", "slice along the third axis; default: where the label is largest", 0, 1e6},
+          r.slice)
+      .option({"contour", "", "which contour, by area, 0 the largest", 0, 1e6}, r.contour)
+      .option({"edges", "", "resample the contour to this many equal edges", 0, 1e7}, r.edges)
+      .option({"smooth", "voxels", "Gaussian that anti-aliases the label's mask"},
               r.contours.smoothing);
 }
 

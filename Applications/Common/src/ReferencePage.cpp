@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
 
+#include "Explica/Core/Text.h"
 #include "Parse.h"
 #include "Wording.h"
 
@@ -8,46 +9,41 @@ namespace explica::app {
 namespace {
 
 std::string escapeCell(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '|') escaped += '\\';
-    escaped += c;
+  return replaced(text, "|", "\\|");
+}
+
+void add(std::ostringstream& out, const Section& section) {
+  if (!section.rows.empty()) out << "\n| " << section.title << " | |\n|---|---|\n";
+  for (const auto& [left, right] : section.rows) out << "| " << left << " | " << right << " |\n";
+}
+
+/// In the table's words: the left column as it is typed.
+Section typed(Section section) {
+  for (auto& [left, right] : section.rows) {
+    left = "`" + escapeCell(left) + "`";
+    right = escapeCell(right);
   }
-  return escaped;
+  return section;
 }
 
 /// The page of a command, seen from the page of another one.
 std::string pageOf(const std::string& command) {
-  std::string folder = command.substr(0, command.find(' '));
-  folder[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(folder[0])));
-  return "../" + folder + "/README.md";
+  const std::string folder = command.substr(0, command.find(' '));
+  return "../" + upperCase(folder.substr(0, 1)) + folder.substr(1) + "/README.md";
 }
 
-/// The steps' options by their prefixes: each step's own page lists them.
-void stepTable(std::ostringstream& out, const Declaration& d) {
-  const auto steps = stepsOf(d);
-  if (!steps.empty()) out << "\n| Options of the steps | |\n|---|---|\n";
-  for (const auto& step : steps) {
-    out << "| `--" << step.prefix << "NAME` | those of [explica " << step.command << "]("
-        << pageOf(step.command) << ") |\n";
+/// A key of summary.json, with what is expected of it.
+std::string meaningOf(const Result& result) {
+  std::string text = result.title;
+  if (!result.unit.empty()) text += " (" + result.unit + ")";
+  if (!result.meaning.empty()) text += ". " + result.meaning;
+  for (const Limit& limit : result.limits) {
+    text += " " + result.expectation(limit);
+    if (limit.outside != Judgement::Good)
+      text += ", otherwise " + std::string(nameOf(limit.outside));
+    text += ".";
   }
-}
-
-/// The keys of summary.json, with what is expected of them.
-void resultTable(std::ostringstream& out, const Results& results) {
-  if (results.begin() == results.end()) return;
-  out << "\n| Results in summary.json | |\n|---|---|\n";
-  for (const Result& result : results) {
-    out << "| `" << escapeCell(result.key) << "` | " << escapeCell(result.title);
-    if (!result.unit.empty()) out << " (" << result.unit << ")";
-    if (!result.meaning.empty()) out << ". " << escapeCell(result.meaning);
-    for (const Limit& limit : result.limits) {
-      out << " " << escapeCell(result.expectation(limit));
-      if (limit.outside != Judgement::Good) out << ", otherwise " << nameOf(limit.outside);
-      out << ".";
-    }
-    out << " |\n";
-  }
+  return text;
 }
 
 }  // namespace
@@ -57,40 +53,31 @@ std::string referencePage(const Declaration& d) {
   out << "## explica " << d.name << "\n\n" << d.synopsisText << ".\n\n    " << usageLine(d) << "\n";
   if (!d.descriptionText.empty()) {
     out << '\n';
-    wrap(out, d.descriptionText, 0, 0);
+    wrap(out, d.descriptionText);
   }
-  const auto table = [&](const std::string& title, const std::vector<Parameter>& parameters,
-                         const auto& wanted) {
-    bool heading = false;
-    for (const Parameter& p : parameters) {
-      if (!wanted(p)) continue;
-      if (!heading) out << "\n| " << title << " | |\n|---|---|\n";
-      heading = true;
-      out << "| `" << escapeCell(leftColumn(p)) << "` | " << escapeCell(rightColumn(p)) << " |\n";
-    }
-  };
-  table("Argument", d.parameters, [](const Parameter& p) { return p.positional; });
-  for (const auto& category : categoriesOf(d.parameters)) {
-    table(category, d.parameters, [&](const Parameter& p) {
-      return !p.positional && p.stepCommand.empty() && p.option.category == category;
-    });
+  std::vector<Parameter> own = d.parameters;  // the steps' own pages list theirs
+  std::erase_if(own, [](const Parameter& p) { return !p.stepCommand.empty(); });
+  for (const Section& section : sectionsOf(own, "Argument")) add(out, typed(section));
+  Section steps{"Options of the steps", {}}, files{"Writes", {}},
+      keys{"Results in summary.json", {}};
+  for (const auto& [prefix, command] : stepsOf(d)) {
+    steps.rows.emplace_back("`--" + prefix + "NAME`",
+                            "those of [explica " + command + "](" + pageOf(command) + ")");
   }
-  stepTable(out, d);
+  for (const auto& slot : allOutputs(d)) {
+    files.rows.emplace_back(slot.pattern, slot.help + " (" + std::string(nameOf(slot.kind)) + ")");
+  }
+  for (const Result& result : d.stageResults) keys.rows.emplace_back(result.key, meaningOf(result));
+  add(out, steps);
   if (d.writesOutput) {
-    out << "\n| Writes | |\n|---|---|\n";
-    for (const auto& slot : allOutputs(d)) {
-      out << "| `" << slot.pattern << "` | " << escapeCell(slot.help) << " (" << nameOf(slot.kind)
-          << ") |\n";
-    }
-    resultTable(out, d.stageResults);
+    add(out, typed(files));
+    add(out, typed(keys));
   }
   for (const auto& example : d.examples) {
     out << "\n" << example.what << ":\n\n    " << example.commandLine << "\n";
   }
-  if (!d.references.empty()) {
-    out << "\nReferences:\n\n";
-    for (const auto& reference : d.references) out << "- " << reference << "\n";
-  }
+  if (!d.references.empty()) out << "\nReferences:\n\n";
+  for (const auto& reference : d.references) out << "- " << reference << "\n";
   return out.str();
 }
 

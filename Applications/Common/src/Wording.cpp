@@ -8,6 +8,7 @@
 #include "Explica/Core/Text.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace explica::app {
 
@@ -15,8 +16,7 @@ namespace {
 
 /// A list option whose elements are given by repeating it.
 bool repeats(const Parameter& parameter) {
-  const std::string type = parameter.option.type();
-  return parameter.option.isList() && (parameter.file || type == "point2" || type == "point3");
+  return parameter.option.isList && (parameter.file || parameter.option.isPoint());
 }
 
 }  // namespace
@@ -27,19 +27,19 @@ std::string placeholder(const Parameter& parameter) {
   std::string word;
   if (parameter.file) {
     word = *parameter.file == FileKind::Folder ? "DIR" : "FILE";
-  } else if (option.type() == "choice") {
-    word = joined(option.choices(), "|");
-  } else if (option.type() == "point2") {
+  } else if (option.type == "choice") {
+    word = joined(option.choices, "|");
+  } else if (option.type == "point2") {
     word = "X,Y";
-  } else if (option.type() == "point3") {
+  } else if (option.type == "point3") {
     word = "X,Y,Z";
   } else if (option.unit == "mm") {
     word = "MM";
   } else if (option.unit == "s") {
     word = "S";
-  } else if (option.type() == "integer") {
+  } else if (option.type == "integer") {
     word = "N";
-  } else if (option.type() == "number") {
+  } else if (option.type == "number") {
     word = "V";
   } else if (option.name == "out") {
     word = "DIR";
@@ -48,7 +48,7 @@ std::string placeholder(const Parameter& parameter) {
   } else {
     word = "TEXT";
   }
-  const bool commas = option.isList() && !repeats(parameter) && option.type() != "text";
+  const bool commas = option.isList && !repeats(parameter) && option.type != "text";
   return word + (commas ? "[," + word + "...]" : "");
 }
 
@@ -70,7 +70,7 @@ std::string rightColumn(const Parameter& parameter) {
   if (const std::string range = option.range(); !range.empty()) append(range);
   if (parameter.required && !parameter.positional) append("required");
   if (!parameter.required && parameter.positional) append("may be left out");
-  if (parameter.positional && option.isList()) append("one or more");
+  if (parameter.positional && option.isList) append("one or more");
   if (!parameter.positional && repeats(parameter)) append("may be repeated");
   if (option.isFlag()) {
     if (parameter.defaultText == "true")
@@ -83,14 +83,13 @@ std::string rightColumn(const Parameter& parameter) {
 
 void wrap(std::ostringstream& out, const std::string& text, std::size_t indent,
           std::size_t column) {
-  constexpr std::size_t kWidth = 96;  // columns of help
   std::istringstream words(text);
   std::string word;
   std::size_t at = column;
   bool first = true;
   while (words >> word) {
     // Markdown takes a line that begins with an operator for an item of a list.
-    if (!first && word.size() > 1 && at + 1 + word.size() > kWidth) {
+    if (!first && word.size() > 1 && at + 1 + word.size() > 96) {
       out << '\n' << std::string(indent, ' ');
       at = indent;
     } else if (!first) {
@@ -121,7 +120,7 @@ std::string usageLine(const Declaration& d) {
   for (const Parameter& p : d.parameters) {
     if (!p.positional) continue;
     std::string word = p.option.name;
-    if (p.option.isList()) word += "...";
+    if (p.option.isList) word += "...";
     line += " " + (p.required ? word : "[" + word + "]");
   }
   for (const Parameter& p : d.parameters) {
@@ -131,15 +130,29 @@ std::string usageLine(const Declaration& d) {
   return line + " [options]";
 }
 
-std::vector<std::string> categoriesOf(const std::vector<Parameter>& parameters) {
-  std::vector<std::string> categories;
-  for (const Parameter& p : parameters) {
-    if (!p.positional &&
-        std::find(categories.begin(), categories.end(), p.option.category) == categories.end()) {
-      categories.push_back(p.option.category);
-    }
+std::string replaced(std::string text, std::string_view from, std::string_view by) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += by.size()) {
+    text.replace(at, from.size(), by);
   }
-  return categories;
+  return text;
+}
+
+std::string upperCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
+std::vector<Section> sectionsOf(const std::vector<Parameter>& parameters,
+                                const std::string& arguments) {
+  std::vector<Section> sections = {{arguments, {}}};
+  for (const Parameter& p : parameters) {
+    const std::string& title = p.positional ? arguments : p.option.category;
+    auto section = std::ranges::find(sections, title, &Section::title);
+    if (section == sections.end()) section = sections.insert(section, Section{title, {}});
+    section->rows.emplace_back(leftColumn(p), rightColumn(p));
+  }
+  if (sections.front().rows.empty()) sections.erase(sections.begin());
+  return sections;
 }
 
 std::vector<Parameter> allParameters(const Declaration& declaration, CommonOptions& common) {
@@ -157,15 +170,30 @@ std::vector<OutputSlot> allOutputs(const Declaration& d) {
   return outputs;
 }
 
-std::vector<StepOptions> stepsOf(const Declaration& d) {
-  std::vector<StepOptions> steps;
+std::vector<std::pair<std::string, std::string>> stepsOf(const Declaration& d) {
+  std::vector<std::pair<std::string, std::string>> steps;
   for (const Parameter& p : d.parameters) {
-    if (p.stepCommand.empty()) continue;
-    if (steps.empty() || steps.back().command != p.stepCommand) {
-      steps.push_back({p.stepCommand, p.stepPrefix});
-    }
+    const bool isNew = steps.empty() || steps.back().second != p.stepCommand;
+    if (isNew && !p.stepCommand.empty()) steps.emplace_back(p.stepPrefix, p.stepCommand);
   }
   return steps;
+}
+
+const std::vector<std::pair<std::string, std::string>>& exitCodes() {
+  static const std::vector<std::pair<std::string, std::string>> all = {
+      {"0", "done"},
+      {"1", "usage"},
+      {"2", "bad input"},
+      {"3", "a goal or check was missed (results written and marked)"},
+      {"4", "environment (disk full, out of memory)"}};
+  return all;
+}
+
+std::string exitCodesText() {
+  return "Exit codes: " +
+         joined(exitCodes(), ", ",
+                [](const auto& code) { return code.first + " " + code.second; }) +
+         ".";
 }
 
 }  // namespace explica::app

@@ -21,9 +21,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostLabels = 64;  // a T1 has more grey values
-constexpr int kFewestParcels = 20;       // of the 70 or 150 of a parcellation
-constexpr double kPatchReach = 15;       // mm
-constexpr int kFrames = 40;              // of the evolution that the report plays
 
 // FreeSurfer's numbers, left: white matter, and what the white surface encloses beside it
 // (ventricles, thalamus, basal ganglia, accumbens, ventral diencephalon, vessel, choroid plexus,
@@ -385,7 +382,7 @@ class Planner {
     const std::string file = std::string(nameOf(options_.unfolded)) + ".surf.gii";
     const Json json = {{"SURFACE", (out_ / ("surface" + ending_) / file).string()},
                        {"direction", {left_ ? -1 : 1, 0, 0}},
-                       {"frames", kFrames}};
+                       {"frames", 40}};
     plan_.steps.push_back({"unfold" + ending_, "unfold", {"surface" + ending_}, values(json)});
   }
 
@@ -419,8 +416,8 @@ InputKind detectKind(const fs::path& input) {
     const auto label = static_cast<Label>(value);
     return isParcel(label, true) || isParcel(label, false);
   });
-  return distinct.size() <= 4 * kMostLabels && parcels >= kFewestParcels ? InputKind::Labels
-                                                                         : InputKind::T1;
+  return distinct.size() <= 4 * kMostLabels && parcels >= 20 ? InputKind::Labels  // of 70 or 150
+                                                             : InputKind::T1;
 }
 
 bool labelsHaveSides(const fs::path& labels) {
@@ -481,7 +478,7 @@ Point outermostPoint(const TriangleMesh& mesh, const Vector& direction) {
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     const Vector from = mesh.positions.row(v).transpose() - centroid;
     const double along = from.dot(d);
-    if ((from - along * d).norm() > kPatchReach || along <= farthest) continue;
+    if ((from - along * d).norm() > 15 || along <= farthest) continue;
     farthest = along;
     best = mesh.positions.row(v).transpose();
   }

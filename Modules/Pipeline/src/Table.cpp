@@ -4,46 +4,32 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/FileText.h"
-#include "Explica/Core/Text.h"
-#include "Explica/Core/Types.h"
 
-#include <sstream>
+#include <algorithm>
 
 namespace explica::pipeline {
-const std::vector<double>* Table::column(std::string_view name) const {
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    if (names[c] == name) return &columns[c];
-  }
-  return nullptr;
+
+bool Table::has(const std::string& name) const {
+  return std::ranges::find(names, name) != names.end();
 }
 
-const std::vector<std::string>* Table::text(std::string_view name) const {
-  for (std::size_t c = 0; c < names.size(); ++c) {
-    if (names[c] == name) return &texts[c];
-  }
-  return nullptr;
+std::vector<double> Table::numbers(const std::string& name) const {
+  std::vector<double> column;
+  for (const TableRow& row : rows) column.push_back(numberIn(row, name));
+  return column;
+}
+
+const std::string& cellIn(const TableRow& row, const std::string& column) {
+  const auto cell = row.find(column);
+  if (cell == row.end()) throw IOError("a table has no column " + column);
+  return cell->second;
 }
 
 Table readTable(const std::filesystem::path& file) {
-  std::istringstream stream(fileText(file));
-  std::string line;
-  if (!std::getline(stream, line)) throw IOError(file.string() + ": no table can be read from it");
-  Table table;
-  table.names = cellsOf(line);
-  table.columns.resize(table.names.size());
-  table.texts.resize(table.names.size());
-  while (std::getline(stream, line)) {
-    const std::vector<std::string> row = cellsOf(line);
-    if (row.size() != table.names.size()) continue;
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      std::istringstream digits(row[c]);
-      digits.imbue(std::locale::classic());
-      double value = kNaN;
-      if (!(digits >> value)) value = kNaN;
-      table.columns[c].push_back(value);
-      table.texts[c].push_back(row[c]);
-    }
-  }
+  const std::string text = fileText(file);
+  Table table{cellsOf(text.substr(0, text.find('\n'))), tableRows(text)};
+  if (table.names.empty()) throw IOError(file.string() + ": no table can be read from it");
+  std::erase_if(table.rows, [&](const TableRow& row) { return row.size() < table.names.size(); });
   return table;
 }
 

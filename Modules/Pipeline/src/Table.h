@@ -2,23 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Core/Text.h"
+
 #include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace explica::pipeline {
 
-/// Columns with names, as numbers (what is no number is not-a-number) and as they stand.
+/// A table of this program.
 struct Table {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-  std::vector<std::vector<std::string>> texts;
+  std::vector<std::string> names;  ///< of its columns, in order
+  std::vector<TableRow> rows;      ///< each with every column
 
-  [[nodiscard]] const std::vector<double>* column(std::string_view name) const;
-  [[nodiscard]] const std::vector<std::string>* text(std::string_view name) const;
-  [[nodiscard]] std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+  [[nodiscard]] bool has(const std::string& name) const;
+  /// A column's numbers; what is none is not-a-number.
+  [[nodiscard]] std::vector<double> numbers(const std::string& name) const;
 };
+
+/// @throws IOError  there is no such column
+[[nodiscard]] const std::string& cellIn(const TableRow& row, const std::string& column);
 
 /// Reads a tab-separated table whose first row names its columns; rows that are cut short (a run
 /// that was killed) are left out.

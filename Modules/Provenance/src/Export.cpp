@@ -44,14 +44,10 @@ std::map<std::string, std::string> placesOf(const std::vector<LocatedRecord>& re
   std::map<std::string, std::string> places;
   for (const LocatedRecord& located : records) {
     const std::string folder = below(root, located.path.parent_path());
-    for (const Json* outputs :
-         {&located.record["outputs"], &located.record["execution"]["varying_outputs"]}) {
-      for (const Json& output : *outputs) {
-        if (!output.contains("sha256")) continue;
-        const std::string name = output["path"];
-        places.emplace(output["sha256"],
-                       folder.empty() || folder == "." ? name : folder + "/" + name);
-      }
+    for (const Json& output : hashedOutputs(located.record)) {
+      const std::string name = output["path"];
+      places.emplace(output["sha256"],
+                     folder.empty() || folder == "." ? name : folder + "/" + name);
     }
   }
   return places;
@@ -76,11 +72,8 @@ std::vector<Account> accountsOf(const std::vector<LocatedRecord>& records, const
       account.used.push_back(fact(input, input["name"]));
       account.used.back().role = input["role"];
     }
-    for (const Json* outputs :
-         {&located.record["outputs"], &located.record["execution"]["varying_outputs"]}) {
-      for (const Json& output : *outputs) {
-        if (output.contains("sha256")) account.generated.push_back(fact(output, output["path"]));
-      }
+    for (const Json& output : hashedOutputs(located.record)) {
+      account.generated.push_back(fact(output, output["path"]));
     }
     accounts.push_back(std::move(account));
   }
@@ -91,19 +84,13 @@ std::string softwareName(const Json& record) {
   return "explica-" + record["software"]["version"].get<std::string>();
 }
 
-/// Adds to an array unless an element has the same @id or Id.
-class Unique {
- public:
-  explicit Unique(std::string key) : key_(std::move(key)) {}
+/// Elements of which no two have the same Id.
+struct Unique {
+  Json all = Json::array();
+  std::set<std::string> seen = {};
   void add(Json element) {
-    if (seen_.insert(element[key_].get<std::string>()).second) all_.push_back(std::move(element));
+    if (seen.insert(element["Id"].get<std::string>()).second) all.push_back(std::move(element));
   }
-  [[nodiscard]] const Json& all() const { return all_; }
-
- private:
-  std::string key_;
-  std::set<std::string> seen_;
-  Json all_ = Json::array();
 };
 
 /// The command without its paths: options as they were resolved.
@@ -210,7 +197,7 @@ Json toProvJson(const std::vector<LocatedRecord>& records) {
 std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records,
                                        const fs::path& root) {
   const std::string base = "bids::prov#";
-  Unique activities("Id"), entities("Id"), environments("Id"), software("Id");
+  Unique activities, entities, environments, software;
   const auto accounts = accountsOf(records, root);
   const auto nameOfFile = [&](const FileFact& file) {
     return file.inside ? "bids::" + file.label : base + "entity-" + file.sha256.substr(0, 16);
@@ -232,20 +219,19 @@ std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records
     described.update(facts);
     environments.add(described);
     Json used = Json::array({environment});
+    const auto addFile = [&](const FileFact& file, bool made) {
+      Json entity = {{"Id", nameOfFile(file)},
+                     {"Label", fs::path(file.label).filename().string()},
+                     {"AtLocation", file.label}};
+      if (made) entity["GeneratedBy"] = id;
+      entity["Digest"] = {{"sha256", file.sha256}};
+      entities.add(std::move(entity));
+    };
     for (const FileFact& file : accounts[n].used) {
       used.push_back(nameOfFile(file));
-      entities.add({{"Id", nameOfFile(file)},
-                    {"Label", fs::path(file.label).filename().string()},
-                    {"AtLocation", file.label},
-                    {"Digest", {{"sha256", file.sha256}}}});
+      addFile(file, false);
     }
-    for (const FileFact& file : accounts[n].generated) {
-      entities.add({{"Id", nameOfFile(file)},
-                    {"Label", fs::path(file.label).filename().string()},
-                    {"AtLocation", file.label},
-                    {"GeneratedBy", id},
-                    {"Digest", {{"sha256", file.sha256}}}});
-    }
+    for (const FileFact& file : accounts[n].generated) addFile(file, true);
     activities.add({{"Id", id},
                     {"Label", commandText(record)},
                     {"Command", commandText(record) + " --config " + textOf(record["options"])},
@@ -254,10 +240,10 @@ std::map<std::string, Json> toBidsProv(const std::vector<LocatedRecord>& records
                     {"StartedAtTime", execution["started"]},
                     {"EndedAtTime", execution["ended"]}});
   }
-  return {{"prov-explica_act.json", Json{{"Activities", activities.all()}}},
-          {"prov-explica_ent.json", Json{{"Entities", entities.all()}}},
-          {"prov-explica_env.json", Json{{"Environments", environments.all()}}},
-          {"prov-explica_soft.json", Json{{"Software", software.all()}}}};
+  return {{"prov-explica_act.json", Json{{"Activities", activities.all}}},
+          {"prov-explica_ent.json", Json{{"Entities", entities.all}}},
+          {"prov-explica_env.json", Json{{"Environments", environments.all}}},
+          {"prov-explica_soft.json", Json{{"Software", software.all}}}};
 }
 
 }  // namespace explica::provenance

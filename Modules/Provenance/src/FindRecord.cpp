@@ -39,12 +39,11 @@ class Remembered {
     if (!stamp) return nullptr;
     const auto at = made_.find(path.native());
     if (at != made_.end() && at->second.first == *stamp) return &at->second.second;
-    if (at == made_.end() && made_.size() >= kMost) made_.clear();
+    if (at == made_.end() && made_.size() >= 16) made_.clear();
     return &(made_[path.native()] = {*stamp, make(path)}).second;
   }
 
  private:
-  static constexpr std::size_t kMost = 16;
   std::map<std::string, std::pair<Stamp, Made>> made_;
 };
 
@@ -64,13 +63,9 @@ Listing listingOf(const fs::path& path) {
   } catch (const Error&) {
     return {};  // another program's provenance.json, or a damaged one
   }
-  const Json& record = listing.record;
-  for (const Json* outputs : {&record["outputs"], &record["execution"]["varying_outputs"]}) {
-    for (const Json& output : *outputs) {
-      if (!output.contains("sha256")) continue;
-      listing.hashOf.emplace(output["path"], output["sha256"]);
-      listing.hashes.insert(output["sha256"]);
-    }
+  for (const Json& output : hashedOutputs(listing.record)) {
+    listing.hashOf.emplace(output["path"], output["sha256"]);
+    listing.hashes.insert(output["sha256"]);
   }
   return listing;
 }

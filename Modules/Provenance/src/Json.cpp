@@ -7,38 +7,25 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 
+#include <charconv>
 #include <cmath>
 
 namespace explica::provenance {
 namespace {
 
-Json elementToJson(double value) {
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
+Json numberOf(const std::string& word) {
+  double value = 0;
+  std::from_chars(word.data(), word.data() + word.size(), value);
+  return std::isinf(value) ? Json(word) : Json(value);
 }
-Json elementToJson(bool value) {
-  return value;
-}
-Json elementToJson(int value) {
-  return value;
-}
-Json elementToJson(const std::string& value) {
-  return value;
-}
-template <int N>
-Json elementToJson(const Eigen::Matrix<double, N, 1>& value) {
+
+Json elementOf(const Option& option, const std::string& word) {
+  if (option.isFlag()) return word == "true";
+  if (option.type == "integer") return std::stoi(word);
+  if (option.type == "number") return numberOf(word);
+  if (!option.isPoint()) return word;
   Json array = Json::array();
-  for (int i = 0; i < N; ++i) array.push_back(elementToJson(value[i]));
-  return array;
-}
-template <class T>
-Json elementToJson(const std::optional<T>& value) {
-  return value ? elementToJson(*value) : Json(nullptr);
-}
-template <class T>
-Json elementToJson(const std::vector<T>& values) {
-  Json array = Json::array();
-  for (const auto& value : values) array.push_back(elementToJson(value));
+  for (const std::string& part : cellsOf(word, ',')) array.push_back(numberOf(part));
   return array;
 }
 
@@ -52,56 +39,31 @@ std::string commaJoined(const Json& array) {
   return joined(array, ",", wordOf);
 }
 
-/// Empties an optional or a list.
-void unset(Option& option) {
-  std::visit(
-      [&](auto& where) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(where)>, ChoiceTarget>) {
-          where.set({});
-        } else if constexpr (requires { where->reset(); }) {
-          where->reset();
-        } else if constexpr (requires {
-                               where->shrink_to_fit();
-                               where->pop_back();
-                             }) {
-          where->clear();
-        }
-      },
-      option.target);
-}
-
 }  // namespace
 
 Json valueOf(const Option& option) {
-  return std::visit(
-      [](const auto& where) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(where)>, ChoiceTarget>) {
-          const auto words = where.get();
-          if (where.list) return words;
-          return words.empty() ? Json(nullptr) : Json(words.front());
-        } else {
-          return elementToJson(*where);
-        }
-      },
-      option.target);
+  const std::vector<std::string> words = option.words();
+  if (!option.isList) return words.empty() ? Json(nullptr) : elementOf(option, words.front());
+  Json array = Json::array();
+  for (const std::string& word : words) array.push_back(elementOf(option, word));
+  return array;
 }
 
 void setValue(Option& option, const Json& value) {
-  const bool isPoint = option.type() == "point2" || option.type() == "point3";
   const auto refuse = [&](const std::string& expected) {
     throw UsageError(option.name + ": " + textOf(value) + " is not " + expected);
   };
   if (value.is_null()) {
-    if (!option.isOptional()) refuse("a value for this option");
-    unset(option);
+    if (!option.isOptional) refuse("a value for this option");
+    option.setWords(option, {});
   } else if (value.is_object()) {
     refuse("a value for this option");
-  } else if (option.isList() && value.is_array()) {
+  } else if (option.isList && value.is_array()) {
     if (value.empty()) {
-      unset(option);
+      option.setWords(option, {});
       return;
     }
-    if (isPoint && !value.front().is_array()) {  // one point stands for a list of one
+    if (option.isPoint() && !value.front().is_array()) {  // one point stands for a list of one
       option.setText({commaJoined(value)});
       return;
     }
@@ -111,7 +73,7 @@ void setValue(Option& option, const Json& value) {
     }
     option.setText(words);
   } else if (value.is_array()) {
-    if (!isPoint) refuse("a single value");
+    if (!option.isPoint()) refuse("a single value");
     option.setText({commaJoined(value)});
   } else {
     if (option.isFlag() && !value.is_boolean()) refuse("true or false");

@@ -193,6 +193,14 @@ Json readRecord(const std::filesystem::path& path) {
   return record;
 }
 
+std::vector<Json> hashedOutputs(const Json& record) {
+  std::vector<Json> outputs(record["outputs"].begin(), record["outputs"].end());
+  std::erase_if(outputs, [](const Json& output) { return !output.contains("sha256"); });
+  const Json& varying = record["execution"]["varying_outputs"];
+  outputs.insert(outputs.end(), varying.begin(), varying.end());
+  return outputs;
+}
+
 bool staysBelow(const std::filesystem::path& name) {
   const std::string text = name.string();
   const bool controls =

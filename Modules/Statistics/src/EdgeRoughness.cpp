@@ -10,7 +10,6 @@ namespace explica::statistics {
 namespace {
 
 constexpr std::size_t kResidualsAtOnce = 16;  // whose residuals are held
-constexpr std::size_t kEdgesOfATask = 4096;   // of the sum over edges
 
 /// Residuals of the people [begin, end), one a column.
 Eigen::MatrixXd residualsOf(const Eigen::MatrixXd& design, const Eigen::MatrixXd& coefficients,
@@ -30,7 +29,7 @@ Eigen::MatrixXd residualsOf(const Eigen::MatrixXd& design, const Eigen::MatrixXd
 void accumulate(const Eigen::MatrixXd& residuals, const Edges& edges, Eigen::VectorXd& products,
                 Eigen::VectorXd& squares) {
   const Eigen::MatrixXd byPlace = residuals.transpose();
-  parallelFor(static_cast<std::size_t>(edges.rows()), kEdgesOfATask, [&](std::size_t e) {
+  parallelFor(static_cast<std::size_t>(edges.rows()), 4096, [&](std::size_t e) {
     const auto i = static_cast<Eigen::Index>(e);
     products[i] += byPlace.col(edges(i, 0)).dot(byPlace.col(edges(i, 1)));
   });

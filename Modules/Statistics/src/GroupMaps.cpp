@@ -14,7 +14,6 @@
 namespace explica::statistics {
 namespace {
 
-constexpr double kFewestOthers = 3;  // of fewer, the deviation says little
 // Of the mean; a deviation below is rounding: maps are single precision.
 constexpr double kNoDifference = 1e-6;
 
@@ -49,7 +48,7 @@ Eigen::VectorXd GroupMaps::distance(const Eigen::VectorXd& map, bool member) con
   Eigen::VectorXd z = Eigen::VectorXd::Constant(map.size(), kNaN);
   for (Eigen::Index v = 0; v < map.size(); ++v) {
     const double n = member ? count_[v] - 1 : count_[v];
-    if (!std::isfinite(map[v]) || n < kFewestOthers) continue;
+    if (!std::isfinite(map[v]) || n < 3) continue;  // says little
     const double from = map[v] - mean_[v];
     const double apart = member ? from * (n + 1) / n : from;  // from the others' mean
     const double squares = member ? squares_[v] - from * apart : squares_[v];

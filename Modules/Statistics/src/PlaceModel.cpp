@@ -15,8 +15,6 @@
 namespace explica::statistics {
 namespace {
 
-constexpr std::size_t kGrain = 64;  // places of a task
-
 /// One place's fit.
 struct PlaceFit {
   Eigen::VectorXd coefficients;
@@ -192,7 +190,7 @@ PlaceModel::PlaceModel(const Design& design, std::vector<Contrast> contrasts)
 PlaceModel::~PlaceModel() = default;
 
 void PlaceModel::fit(const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps) const {
-  parallelFor(static_cast<std::size_t>(values.cols()), kGrain, [&](std::size_t b) {
+  parallelFor(static_cast<std::size_t>(values.cols()), 64, [&](std::size_t b) {
     const Eigen::VectorXd y = values.col(static_cast<Eigen::Index>(b));
     std::vector<Eigen::Index> people;
     for (Eigen::Index i = 0; i < y.size(); ++i) {

@@ -266,42 +266,40 @@ class Sources {
   std::map<std::string, Json> records_;          ///< by step
 };
 
-/// What the columns of a table mean, as BIDS wants it beside the table.
-void describeColumns(Json& sidecar, const std::string& step, const std::string& file) {
-  if (step == "regions") {
-    for (const char* column : {"person", "hemisphere", "atlas", "region", "measure", "unit"}) {
-      sidecar[column] = {{"Description", std::string("the row's ") + column}};
-    }
-    sidecar["value"] = {{"Description", "of the measure in the region, in the row's unit"}};
-  } else if (file == "regions.tsv") {
-    sidecar["index"] = {{"Description", "label of the region"}};
-    sidecar["name"] = {{"Description", "its name"}};
-    sidecar["vertices"] = {{"Description", "vertices in it"}};
-    sidecar["area_white_mm2"] = {{"Description", "area of the white surface"}, {"Units", "mm^2"}};
-    sidecar["volume_mm3"] = {{"Description", "volume between white and pial surface"},
-                             {"Units", "mm^3"}};
-    sidecar["thickness_mean_mm"] = {
-        {"Description", "mean thickness, weighted by area, where there is grey matter"},
-        {"Units", "mm"}};
-    sidecar["thickness_sd_mm"] = {{"Description", "its standard deviation"}, {"Units", "mm"}};
-    sidecar["thickness_nearest_mean_mm"] = {
-        {"Description", "mean of FreeSurfer's thickness: nearest distances, both ways"},
-        {"Units", "mm"}};
-    sidecar["doubtful_share"] = {
-        {"Description",
-         "share of the area where the image leaves a border more than half a voxel"}};
-  } else if (file == "topology.tsv") {
-    sidecar["kind"] = {{"Description", "island, cavity, handle or tunnel"}};
-    for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
-      sidecar[axis] = {{"Description", "place of the defect, RAS"}, {"Units", "mm"}};
-    }
-    sidecar["voxels"] = {{"Description", "voxels changed"}};
-    sidecar["cost"] = {{"Description", "evidence overruled by the correction"}};
-    sidecar["alternative_cost"] = {{"Description", "evidence that the other way would overrule"}};
-    sidecar["side"] = {{"Description", "filled or removed"}};
-    sidecar["why"] = {{"Description", "reason for the choice"}};
-  }
-}
+/// What the columns of a run's table mean.
+struct TableColumn {
+  const char *step, *file, *name, *meaning, *units;
+};
+constexpr TableColumn kTableColumns[] = {
+    {"regions", "regions.tsv", "person", "the row's person", ""},
+    {"regions", "regions.tsv", "hemisphere", "the row's hemisphere", ""},
+    {"regions", "regions.tsv", "atlas", "the row's atlas", ""},
+    {"regions", "regions.tsv", "region", "the row's region", ""},
+    {"regions", "regions.tsv", "measure", "the row's measure", ""},
+    {"regions", "regions.tsv", "unit", "the row's unit", ""},
+    {"regions", "regions.tsv", "value", "of the measure in the region, in the row's unit", ""},
+    {"surface", "regions.tsv", "index", "label of the region", ""},
+    {"surface", "regions.tsv", "name", "its name", ""},
+    {"surface", "regions.tsv", "vertices", "vertices in it", ""},
+    {"surface", "regions.tsv", "area_white_mm2", "area of the white surface", "mm^2"},
+    {"surface", "regions.tsv", "volume_mm3", "volume between white and pial surface", "mm^3"},
+    {"surface", "regions.tsv", "thickness_mean_mm",
+     "mean thickness, weighted by area, where there is grey matter", "mm"},
+    {"surface", "regions.tsv", "thickness_sd_mm", "its standard deviation", "mm"},
+    {"surface", "regions.tsv", "thickness_nearest_mean_mm",
+     "mean of FreeSurfer's thickness: nearest distances, both ways", "mm"},
+    {"surface", "regions.tsv", "doubtful_share",
+     "share of the area where the image leaves a border more than half a voxel", ""},
+    {"surface", "topology.tsv", "kind", "island, cavity, handle or tunnel", ""},
+    {"surface", "topology.tsv", "x_mm", "place of the defect, RAS", "mm"},
+    {"surface", "topology.tsv", "y_mm", "place of the defect, RAS", "mm"},
+    {"surface", "topology.tsv", "z_mm", "place of the defect, RAS", "mm"},
+    {"surface", "topology.tsv", "voxels", "voxels changed", ""},
+    {"surface", "topology.tsv", "cost", "evidence overruled by the correction", ""},
+    {"surface", "topology.tsv", "alternative_cost", "evidence that the other way would overrule",
+     ""},
+    {"surface", "topology.tsv", "side", "filled or removed", ""},
+    {"surface", "topology.tsv", "why", "reason for the choice", ""}};
 
 }  // namespace
 
@@ -379,7 +377,11 @@ std::vector<fs::path> exportRun(const fs::path& run, const fs::path& out,
       sidecar["EulerNumber"] = surface["euler_characteristic"];
       sidecar["NumberOfDefects"] = surface["defects_corrected"];
     }
-    describeColumns(sidecar, item.step, item.file);
+    for (const TableColumn& column : kTableColumns) {
+      if (item.step != column.step || item.file != column.file) continue;
+      sidecar[column.name] = {{"Description", column.meaning}};
+      if (*column.units != '\0') sidecar[column.name]["Units"] = column.units;
+    }
     sidecar["Digest"] = {{"sha256", provenance::sha256Of(content)}};
     const std::string activity = sources.activity(item.step);
     if (!activity.empty()) sidecar["GeneratedBy"] = "bids::prov#" + activity;

@@ -22,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using provenance::Json;
 
-constexpr int kDeepest = 4;  // folders between a person and the label volumes
-
 bool isOther(const std::string& name) {
   static const std::set<std::string> others = {"code", "derivatives", "sourcedata", "stimuli"};
   return name.starts_with(".") || others.contains(name);
@@ -38,7 +36,7 @@ std::vector<fs::path> filesBelow(const fs::path& folder) {
   std::vector<fs::path> files;
   auto entry = fs::recursive_directory_iterator(folder);
   for (; entry != fs::recursive_directory_iterator(); ++entry) {
-    if (entry.depth() >= kDeepest) entry.disable_recursion_pending();
+    if (entry.depth() >= 4) entry.disable_recursion_pending();
     if (entry->is_regular_file()) files.push_back(entry->path());
   }
   std::ranges::sort(files);

@@ -55,8 +55,7 @@ std::string shown(const Json& value) {
 std::string hint(const std::string& word, const std::vector<std::string>& known) {
   const std::string nearest = nearestOf(word, known, word.size() / 3 + 2);
   if (!nearest.empty()) return "; did you mean '" + nearest + "'?";
-  constexpr std::size_t kListed = 12;  // names in a message
-  return known.size() > kListed || known.empty() ? "" : "; known are " + joined(known);
+  return known.size() > 12 || known.empty() ? "" : "; known are " + joined(known);
 }
 
 /// The schema that an object's key falls under, or nullptr.

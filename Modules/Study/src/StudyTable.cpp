@@ -62,9 +62,6 @@ constexpr KnownColumn kColumns[] = {
 /// Steps whose numbers make a row.
 constexpr const char* kSteps[] = {"segment", "thickness", "surface", "register", "unfold"};
 
-constexpr double kFar = 3.5;            // robust z [IglewiczHoaglin1993]
-constexpr std::size_t kFewestRows = 8;  // below, a median and its spread say little
-
 std::string textOf(const Json& value) {
   if (value.is_null()) return "n/a";
   return cellText(value.is_string() ? value.get<std::string>() : provenance::textOf(value));
@@ -216,7 +213,7 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
   for (const std::size_t n : group) {
     if (const auto number = numberIn(rows[n], column)) values.push_back(*number);
   }
-  if (values.size() < kFewestRows) return;
+  if (values.size() < 8) return;
   const double median = medianOf(values);
   for (double& value : values) value = std::abs(value - median);
   const double spread = medianOf(std::move(values));
@@ -225,7 +222,7 @@ void flagOutliers(const std::vector<StudyRow>& rows, const std::vector<std::size
     const auto number = numberIn(rows[n], column);
     if (!number) continue;
     const double z = 0.6745 * (*number - median) / spread;
-    if (std::abs(z) <= kFar) continue;
+    if (std::abs(z) <= 3.5) continue;  // [IglewiczHoaglin1993]
     flags[n].push_back({column, printed("robust z %.1f", z)});
   }
 }

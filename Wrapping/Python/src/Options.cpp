@@ -75,12 +75,12 @@ void setFromKeywords(std::vector<provenance::Option> options, const py::kwargs& 
 std::string keywordHelp(const std::vector<provenance::Option>& options) {
   std::string text = "\n\nKeywords\n--------\n";
   for (const auto& option : options) {
-    text += pythonName(option.name) + " : " + option.type() + (option.isList() ? " list" : "");
+    text += pythonName(option.name) + " : " + option.type + (option.isList ? " list" : "");
     const std::string value = option.text();
     if (!value.empty()) text += " = " + value;
     if (!option.unit.empty()) text += " [" + option.unit + "]";
     text += "\n    " + option.help;
-    if (const auto choices = option.choices(); !choices.empty()) {
+    if (const auto choices = option.choices; !choices.empty()) {
       text += " (";
       for (std::size_t i = 0; i < choices.size(); ++i) text += (i ? ", " : "") + choices[i];
       text += ")";
@@ -96,9 +96,9 @@ void noteKeywords(py::module_& m, const std::string& function,
   if (!py::hasattr(m, "keywords")) m.attr("keywords") = py::dict();
   py::list list;
   for (const auto& option : options) {
-    list.append(py::dict("name"_a = pythonName(option.name), "type"_a = option.type(),
-                         "choices"_a = option.choices(), "optional"_a = option.isOptional(),
-                         "list"_a = option.isList(),
+    list.append(py::dict("name"_a = pythonName(option.name), "type"_a = option.type,
+                         "choices"_a = option.choices, "optional"_a = option.isOptional,
+                         "list"_a = option.isList,
                          "default"_a = pythonOf(provenance::valueOf(option))));
   }
   m.attr("keywords")[py::str(function)] = list;

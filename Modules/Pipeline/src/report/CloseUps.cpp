@@ -95,16 +95,14 @@ std::vector<CrossingPair> crossingPairs(const StepFolder& step) {
 
 std::vector<report::CloseUp> crossingPlaces(const std::vector<CrossingPair>& pairs,
                                             std::size_t most) {
-  constexpr double kOnePlace = 3;  // mm
   struct Group {
     const CrossingPair* first = nullptr;
     std::size_t count = 0;
   };
   std::vector<Group> groups;
   for (const CrossingPair& pair : pairs) {
-    auto near = std::ranges::find_if(groups, [&](const Group& group) {
-      return (group.first->place - pair.place).norm() < kOnePlace;
-    });
+    auto near = std::ranges::find_if(
+        groups, [&](const Group& group) { return (group.first->place - pair.place).norm() < 3; });
     if (near == groups.end()) near = groups.insert(groups.end(), {&pair, 0});
     ++near->count;
   }

@@ -58,7 +58,7 @@ void showCrossings(ResultFolder& results, const StepFolder& step,
   const TriangleMesh crossing = geometry::extractFaces(mesh, faces).mesh;
   report::MosaicOptions close{.tileHeight = 170, .convention = options.convention};
   mosaics.push_back(
-      {kCrossingPlace, "Where faces cross" + (step.side().empty() ? "" : ", " + step.side()),
+      {kCrossingPlace, "Where faces cross" + step.sideWords(),
        "Slices through the surface as it was at the start; every pair is listed in "
        "intersections.tsv.",
        report::makeCloseUps(

@@ -46,9 +46,8 @@ void listDescribed(const ResultFolder& results, const std::vector<std::string>& 
 
 /// Numbers of a command that has no rows of its own in the table.
 void listOwnNumbers(const StepFolder& step, report::ReportFindings& findings) {
-  constexpr std::size_t kMost = 12;  // rows
   for (const auto& [key, value] : step.summary.items()) {
-    if (findings.rows.size() >= kMost) return;
+    if (findings.rows.size() >= 12) return;
     if (!value.is_number() || key.starts_with("seconds") || key == "peak_memory_bytes") continue;
     findings.rows.push_back({inWords(key), "", {readable(value)}});
   }

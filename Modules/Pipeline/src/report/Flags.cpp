@@ -105,10 +105,10 @@ std::string placeOf(const std::string& step) {
 
 /// Where a reader sees a result, if not where its step is shown.
 std::string placeOf(const StepFolder& step, const std::string& key) {
-  constexpr std::array kPlaces = {std::pair{"self_intersections", kThicknessPlace},
+  constexpr std::array kPlaces = {std::pair{"self_intersections", kPatchPlace},
                                   std::pair{"self_intersections_final", kCrossingPlace},
                                   std::pair{"area_error_mean", kDistortionPlace},
-                                  std::pair{"seen_final", kPatchViewsPlace}};
+                                  std::pair{"seen_final", kPatchPlace}};
   for (const auto& [name, place] : kPlaces) {
     if (key == name) return place;
   }

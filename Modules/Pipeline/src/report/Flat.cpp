@@ -1,9 +1,6 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
 #include "Explica/IO/SurfaceFile.h"
-#include "Explica/Pipeline/FlatStack.h"
-#include "Explica/Report/Chart.h"
 #include "Explica/Report/Evolution.h"
 #include "ReportParts.h"
 
@@ -72,14 +69,6 @@ Vector sightOf(const FlatPatch& patch) {
   return normal.norm() > 0 ? Vector(-normal.normalized()) : Vector(1, 0, 0);
 }
 
-Eigen::VectorXd onPatch(const FlatPatch& patch, const Eigen::VectorXd& whole) {
-  Eigen::VectorXd part(static_cast<Eigen::Index>(patch.vertices.size()));
-  for (std::size_t n = 0; n < patch.vertices.size(); ++n) {
-    part[n] = whole[patch.vertices[n]];
-  }
-  return part;
-}
-
 /// The patch's vertices of a whole surface.
 Positions positionsOf(const FlatPatch& patch, const TriangleMesh& whole) {
   return whole.positions(patch.vertices, Eigen::all);
@@ -133,76 +122,19 @@ void showShapes(ResultFolder& results, const StepFolder& step, const std::vector
   evolution.shapes.push_back({"flat", flatInPlace(*patch, sight)});
   evolution.region.resize(patch->vertices.size());
   std::iota(evolution.region.begin(), evolution.region.end(), 0);
-  constexpr double kFar = 1e5;  // mm
-  evolution.viewpoint = evolution.mesh.positions.colwise().mean().transpose() - kFar * sight;
+  evolution.viewpoint = evolution.mesh.positions.colwise().mean().transpose() - 1e5 * sight;
   for (const GivenMap& map : maps) {
-    const Eigen::VectorXd part = onPatch(*patch, map.values);
+    const Eigen::VectorXd part = map.values(patch->vertices);
     evolution.maps.push_back({part, report::scaleFor(part, map.name, map.unit)});
   }
   results.content().evolutions.push_back(std::move(evolution));
 }
 
-void showStack(ResultFolder& results, const fs::path& file) {
-  FlatStack stack = drawFlatStack(file);
-  report::ReportViews views;
-  views.title = stack.name + ", layer by layer";
-  views.caption =
-      std::string("The grid's depths from white to pial, cells of ") + readable(stack.cell) +
-      " mm" + (stack.frames > 1 ? "; mean of " + std::to_string(stack.frames) + " frames" : "") +
-      ". Pale blue: off the map, or not known.";
-  views.scale = stack.scale;
-  for (FlatStack::Tile& tile : stack.tiles) {
-    views.views.push_back({"depth " + readable(tile.depth), std::move(tile.picture)});
-  }
-  results.content().views.push_back(std::move(views));
-}
-
-void tabulatePatch(ResultFolder& results, const StepFolder& step) {
-  const Table read = readTable(step.folder / "patch.tsv");
-  report::ReportTable table{"",
-                            "Regions of the patch",
-                            "Areas in mm\u00b2; means and standard deviations of the maps are "
-                            "weighted by the vertices' areas.",
-                            {},
-                            {}};
-  for (std::size_t c = 0; c < read.names.size(); ++c) {
-    if (read.names[c] != "key") table.columns.push_back(inWords(read.names[c]));
-  }
-  for (std::size_t row = 0; row < read.rows(); ++row) {
-    std::vector<std::string>& cells = table.rows.emplace_back();
-    for (std::size_t c = 0; c < read.names.size(); ++c) {
-      if (read.names[c] == "key") continue;
-      const double value = read.columns[c][row];
-      cells.push_back(c > 0 && std::isfinite(value) ? readable(value) : read.texts[c][row]);
-    }
-  }
-  results.content().tables.push_back(std::move(table));
-}
-
-void chartDistortion(ResultFolder& results, const StepFolder& step) {
-  const std::vector<std::int32_t> vertices = patchVertices(step);
-  bool first = true;
-  for (const io::VertexMap& map : io::readVertexMaps(step.folder / "distortion.shape.gii")) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(vertices.size()));
-    for (std::size_t n = 0; n < vertices.size(); ++n) {
-      values[n] = map.values[vertices[n]];
-    }
-    const std::string axis = map.unit.empty() ? map.name : map.name + " [" + map.unit + "]";
-    results.content().charts.push_back(
-        {first ? kDistortionPlace : "",
-         report::histogramSvg(values, {inWords(map.name), axis, "share of the patch's vertices"}),
-         "Distortion of the flat map"});
-    first = false;
-  }
-}
-
 void showPicture(ResultFolder& results, const StepFolder& step) {
   const std::filesystem::path file = step.folder / "flat.png";
   if (!isThere(file)) return;
-  const std::filesystem::directory_iterator files(step.folder);
-  const bool outlined = std::any_of(begin(files), end(files), [](const auto& entry) {
-    const std::string name = entry.path().filename().string();
-    return name.starts_with("patch_") && name.ends_with(".label.gii");
+  const bool outlined = std::ranges::any_of(filesOf(step, ".label.gii"), [](const fs::path& one) {
+    return one.filename().string().starts_with("patch_");
   });
   results.content().drawings.push_back(
       {kFlatPlace, "The flat map",
@@ -218,12 +150,8 @@ void playFrames(ResultFolder& results, const StepFolder& step) {
   if (frames.meshes.size() < 2) return;
   report::Evolution evolution = report::evolutionOf(frames.meshes);
   evolution.frameTitles = frames.titles;
-  for (const io::VertexMap& map :
-       io::readVertexMaps(step.folder / "distortion.shape.gii", evolution.mesh.vertexCount())) {
-    evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
-  }
-  constexpr double kFarAbove = 1e5;  // mm
-  evolution.viewpoint = Point(0, 0, kFarAbove);
+  addMaps(evolution, step.folder / "distortion.shape.gii");
+  evolution.viewpoint = Point(0, 0, 1e5);
   for (std::int32_t v : evolution.mesh.faces.reshaped()) evolution.region.push_back(v);
   std::ranges::sort(evolution.region);
   evolution.region.erase(std::unique(evolution.region.begin(), evolution.region.end()),
@@ -238,11 +166,15 @@ void showFlat(ResultFolder& results, const StepFolder& step, const std::vector<G
   results.attempt("Picture of the flat map", [&] { showPicture(results, step); });
   results.attempt("The way to the map", [&] { playFrames(results, step); });
   results.attempt("The patch's shapes", [&] { showShapes(results, step, maps); });
-  for (const fs::path& file : flatStackFiles(step.folder)) {
-    results.attempt(file.filename().string(), [&] { showStack(results, file); });
-  }
-  results.attempt("Distortion maps", [&] { chartDistortion(results, step); });
-  results.attempt("Regions of the patch", [&] { tabulatePatch(results, step); });
+  showFlatStacks(results, step);
+  results.attempt("Distortion maps", [&] {
+    chartMaps(results, step, "distortion.shape.gii", kDistortionPlace, patchVertices(step));
+  });
+  results.attempt("Regions of the patch", [&] {
+    tabulate(results, readTable(step.folder / "patch.tsv"), "Regions of the patch",
+             "Areas in mm\u00b2; means and standard deviations of the maps are weighted by the "
+             "vertices' areas.");
+  });
 }
 
 }  // namespace explica::pipeline

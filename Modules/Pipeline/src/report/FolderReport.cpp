@@ -5,7 +5,6 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/Termination.h"
-#include "References.h"
 #include "ReportParts.h"
 
 #include <algorithm>
@@ -157,10 +156,9 @@ void showStep(ResultFolder& results, const StepFolder& step, const std::vector<G
 
 std::string versionOf(const StepFolder& step) {
   if (!step.record.contains("software")) return {};
-  constexpr std::size_t kShort = 10;  // characters of a commit that tell it from others
   const Json& software = step.record["software"];
   return "explica " + software.value("version", "") + ", commit " +
-         software.value("commit", "").substr(0, kShort);
+         software.value("commit", "").substr(0, 10);
 }
 
 report::ReportContent collectReport(const fs::path& folder, const FolderReportOptions& options,
@@ -168,7 +166,6 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
   if (options.slices < 1 || options.slices > kMostSlices) {
     throw InvalidInput("slices: must be between 1 and " + std::to_string(kMostSlices));
   }
-  requireThickness(options.references);
   if (!isFolder(folder)) throw InvalidInput(folder.string() + ": no such folder");
   report::ReportContent content;
   content.title = fs::weakly_canonical(folder).filename().string();
@@ -196,10 +193,8 @@ report::ReportContent collectReport(const fs::path& folder, const FolderReportOp
 
 std::optional<report::Picture> thumbnailOf(const report::ReportContent& content) {
   const report::Picture* large = nullptr;
-  for (const report::ReportViews& views : content.views) {
-    if (views.views.empty()) continue;
-    if (views.id == kThicknessPlace && large == nullptr) large = &views.views.front().picture;
-    if (views.id == kPatchViewsPlace) large = &views.views.back().picture;
+  for (const report::ReportGlance& glance : content.glance) {
+    if (!glance.views.empty()) large = &glance.views.back().second;
   }
   if (large == nullptr || large->width < 2 || large->height < 2) return {};
   report::Picture small(large->width / 2, large->height / 2);

@@ -3,6 +3,7 @@
 #include "GivenMaps.h"
 
 #include "Explica/IO/StatedHemisphere.h"
+#include "ReportParts.h"
 
 #include <string_view>
 
@@ -23,6 +24,14 @@ std::string nameBesideOthers(const std::filesystem::path& file, const std::strin
   std::string own = std::filesystem::path(map).filename().string();
   if (own.starts_with(stem + " ")) own.erase(0, stem.size() + 1);  // "T1w depth 0.5"
   return own.empty() || own == stem ? stem : stem + ", " + own;
+}
+
+void addGiven(report::Evolution& evolution, const std::string& side,
+              const std::vector<GivenMap>& maps) {
+  for (const GivenMap& map : maps) {
+    if (!map.fits(evolution.mesh.vertexCount(), side)) continue;
+    evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
+  }
 }
 
 std::vector<GivenMap> readGivenMaps(ResultFolder& results, const std::vector<std::string>& files) {

@@ -3,7 +3,6 @@
 #include "ReportParts.h"
 
 #include <algorithm>
-#include <set>
 
 namespace explica::pipeline {
 namespace {
@@ -42,10 +41,13 @@ std::string patchWords(const StepFolder& step) {
   };
   const std::string centre = words("center"), radius = words("radius");
   if (centre.empty()) return words("label");
-  return radius + " mm about (" + centre + ") mm" + (step.side().empty() ? "" : ", " + step.side());
+  return radius + " mm about (" + centre + ") mm" + step.sideWords();
 }
 
-void listFacts(const ResultFolder& results, report::ReportContent& content) {
+}  // namespace
+
+void showHead(ResultFolder& results) {
+  report::ReportContent& content = results.content();
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) content.facts.emplace_back(name, value);
   };
@@ -57,32 +59,6 @@ void listFacts(const ResultFolder& results, report::ReportContent& content) {
       first.record.value("execution", Json::object()).value("started", std::string());
   add("Date", started.substr(0, started.find('T')));
   add("Version", versionOf(first));
-}
-
-/// The views of those titles, or all where none of them is there.
-void glanceAt(report::ReportContent& content, const char* id, const std::string& title,
-              const std::string& guide, const std::set<std::string>& titles) {
-  for (const report::ReportViews& figure : content.views) {
-    if (figure.id != id) continue;
-    report::ReportGlance glance{id, title, guide};
-    for (const auto& view : figure.views) {
-      if (titles.contains(view.title)) glance.views.emplace_back(view.title, view.picture);
-    }
-    glance.scale = figure.scale;
-    if (!glance.views.empty()) content.glance.push_back(std::move(glance));
-    return;
-  }
-}
-
-}  // namespace
-
-void showHead(ResultFolder& results) {
-  report::ReportContent& content = results.content();
-  listFacts(results, content);
-  glanceAt(content, kPatchViewsPlace, "Patch before and after",
-           "Right: the sulci's floors face the reader, the rim joins the surroundings. Wrong: "
-           "sulci still folded, a torn or twisted rim. Then: more iterations or a smaller patch.",
-           {"before, from the viewpoint", "after, from the viewpoint"});
 }
 
 }  // namespace explica::pipeline

@@ -13,8 +13,7 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr int kShells = 5;              // of equal depth, where no layers were asked for
-constexpr std::size_t kMostCharts = 6;  // histograms of layers
+constexpr int kShells = 5;  // of equal depth, where no layers were asked for
 
 Volume<float> readMap(const StepFolder& step, const char* file) {
   return io::readScalars(step.folder / file, {.allowNonFinite = true, .allowAllZero = true}).volume;
@@ -40,7 +39,7 @@ void chartLayers(ResultFolder& results, const StepFolder& step, const Volume<Lab
   for (std::size_t v = 0; v < layers.size(); ++v) {
     if (layers[v] > 0 && thickness[v] > 0) values[layers[v]].push_back(thickness[v]);
   }
-  if (values.size() > kMostCharts) return;
+  if (values.size() > 6) return;
   std::vector<double> all;
   for (const auto& [layer, in] : values) all.insert(all.end(), in.begin(), in.end());
   for (const auto& [layer, in] : values) {
@@ -63,8 +62,8 @@ void showLayers(ResultFolder& results, const StepFolder& step, const FolderRepor
   if (!written && !step.has("depth.nii.gz")) return;
   const Volume<Label> layers = layersOf(step);
   report::MosaicOptions mosaic{.perRow = options.slices, .convention = options.convention};
-  const std::string side = step.side().empty() ? "" : ", " + step.side();
-  results.content().mosaics.push_back({kLayerPlace, (written ? "Layers" : "Depth") + side,
+  results.content().mosaics.push_back({kLayerPlace,
+                                       (written ? "Layers" : "Depth") + step.sideWords(),
                                        written ? "Each layer in its colour, the innermost orange."
                                                : "Five shells of equal depth from the inner to the "
                                                  "outer boundary, the innermost orange.",

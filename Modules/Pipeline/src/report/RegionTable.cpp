@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "../Table.h"
+#include "Explica/Core/Text.h"
 #include "ReportParts.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 namespace explica::pipeline {
@@ -20,19 +22,40 @@ constexpr std::array kShown = {Shown{"thickness_mean", "mean thickness [mm]"},
 
 }  // namespace
 
+void tabulate(ResultFolder& results, const Table& read, const std::string& title,
+              const std::string& caption) {
+  constexpr std::size_t kMost = 60;  // rows
+  report::ReportTable table{"", title, caption, {}, {}};
+  for (const std::string& name : read.names) {
+    if (name != "key") table.columns.push_back(inWords(name));
+  }
+  for (std::size_t n = 0; n < std::min(read.rows.size(), kMost); ++n) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    for (const std::string& name : read.names) {
+      if (name == "key") continue;
+      const double value = numberIn(read.rows[n], name);
+      const bool isNumber = &name != &read.names.front() && std::isfinite(value);
+      cells.push_back(isNumber ? readable(value) : read.rows[n].at(name));
+    }
+  }
+  if (read.rows.size() > kMost) {
+    table.caption += printed(" The first %zu of %zu rows.", kMost, read.rows.size());
+  }
+  results.content().tables.push_back(std::move(table));
+}
+
 void tabulateRegions(ResultFolder& results, const StepFolder& step) {
   const Table read = readTable(step.folder / "regions.tsv");
-  const auto *names = read.text("region"), *measures = read.text("measure");
-  const auto* values = read.column("value");
-  if (names == nullptr || measures == nullptr || values == nullptr) return;
   std::map<std::string, std::array<std::string, kShown.size()>> rows;
-  for (std::size_t n = 0; n < read.rows(); ++n) {
+  for (const TableRow& row : read.rows) {
     for (std::size_t c = 0; c < kShown.size(); ++c) {
-      if ((*measures)[n] == kShown[c].measure) rows[(*names)[n]][c] = readable((*values)[n]);
+      if (cellIn(row, "measure") == kShown[c].measure) {
+        rows[cellIn(row, "region")][c] = readable(numberIn(row, "value"));
+      }
     }
   }
   report::ReportTable table{"",
-                            "Regions" + (step.side().empty() ? "" : ", " + step.side()),
+                            "Regions" + step.sideWords(),
                             "The mean is over the area; regions.tsv has all digits and measures.",
                             {"region"},
                             {}};

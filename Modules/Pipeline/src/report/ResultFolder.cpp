@@ -44,6 +44,10 @@ std::string StepFolder::side() const {
   return "";
 }
 
+std::string StepFolder::sideWords() const {
+  return side().empty() ? "" : ", " + side();
+}
+
 ResultFolder::ResultFolder(const fs::path& folder, const Monitor& monitor,
                            report::ReportContent& content)
     : monitor_(monitor), content_(content) {

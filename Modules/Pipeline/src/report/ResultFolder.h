@@ -34,6 +34,8 @@ struct StepFolder {
   [[nodiscard]] bool has(std::string_view file) const { return isThere(folder / file); }
   /// "left", "right", or empty where the step is about neither or both.
   [[nodiscard]] std::string side() const;
+  /// ", left" after a title; empty without a side.
+  [[nodiscard]] std::string sideWords() const;
 };
 
 /// A run's or command's folder, read once.

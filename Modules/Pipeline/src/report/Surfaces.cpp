@@ -11,9 +11,7 @@
 #include "Explica/Report/Figure.h"
 #include "Explica/Report/SliceStack.h"
 #include "MaskBorder.h"
-#include "References.h"
 #include "ReportParts.h"
-#include "StandardViews.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,13 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One hemisphere's surfaces, and the scenes in which they are drawn.
+/// One hemisphere's surfaces.
 struct Hemisphere {
   const StepFolder* step = nullptr;
   std::string side;
   TriangleMesh white;
   TriangleMesh pial;
-  std::optional<report::SurfaceScene> scene;  ///< of the pial surface
 };
 
 /// A scan that shows the anatomy of a label volume: beside it in the folder of a FreeSurfer subject
@@ -64,18 +61,6 @@ std::optional<fs::path> imageOf(const ResultFolder& results, const StepFolder& s
   return scanBeside(*labels).value_or(*labels);
 }
 
-/// Half the height of a picture that holds every hemisphere from any of the sides.
-double commonHalfHeight(const std::vector<const Hemisphere*>& all) {
-  const report::SurfacePictureOptions size = viewSize();
-  double half = 0;
-  for (const Hemisphere* h : all) {
-    for (const auto& [title, view] : standardViews(h->side)) {
-      half = std::max(half, report::cameraFor(h->pial, view, size.width, size.height).halfHeight);
-    }
-  }
-  return half;
-}
-
 /// Values where they are known: on the medial wall, where a surface has no grey matter, a map holds
 /// 0 in place of "not known".
 Eigen::VectorXd known(Eigen::VectorXd values, const Eigen::VectorXd& thickness) {
@@ -96,15 +81,15 @@ report::ColourScale commonScale(const std::vector<Eigen::VectorXd>& values, cons
 /// A map of `explica surface` for the view in three dimensions.
 /// @return its values and scale, or nothing where a hemisphere lacks it
 std::optional<std::pair<std::vector<Eigen::VectorXd>, report::ColourScale>> addMap(
-    ResultFolder& results, const std::vector<const Hemisphere*>& all, const char* file,
+    ResultFolder& results, const std::vector<Hemisphere>& all, const char* file,
     const std::string& word) {
   std::vector<Eigen::VectorXd> values;
   std::string unit;
-  for (const Hemisphere* h : all) {
-    const Eigen::Index n = h->pial.vertexCount();
-    const auto map = mapNamed(h->step->folder / file, n);
+  for (const Hemisphere& h : all) {
+    const Eigen::Index n = h.pial.vertexCount();
+    const auto map = mapNamed(h.step->folder / file, n);
     if (!map) return {};
-    const auto thickness = mapNamed(h->step->folder / "thickness.shape.gii", n);
+    const auto thickness = mapNamed(h.step->folder / "thickness.shape.gii", n);
     values.push_back(thickness ? known(map->values, thickness->values) : map->values);
     unit = map->unit;
   }
@@ -115,90 +100,38 @@ std::optional<std::pair<std::vector<Eigen::VectorXd>, report::ColourScale>> addM
   return std::pair{std::move(values), scale};
 }
 
-/// Thickness where no sulcus hides it, beside the verdict: the inflated hemispheres.
-void glanceAtThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all,
-                       const std::vector<Eigen::VectorXd>& values,
-                       const report::ColourScale& scale) {
-  const report::SurfacePictureOptions size = viewSize();
+/// Thickness, and where no sulcus hides it beside the verdict: the inflated hemispheres from their
+/// outer sides.
+void showThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
+  const auto map = addMap(results, all, "thickness.shape.gii", "thickness");
+  if (!map) return;
+  const auto& [values, scale] = *map;
+  const report::SurfacePictureOptions size{.width = 300, .height = 230};
   std::vector<TriangleMesh> meshes;
   std::vector<report::Camera> cameras;
   double half = 0;
   for (std::size_t h = 0; h < all.size(); ++h) {
     const auto& shapes = results.content().evolutions[h].shapes;
     const auto shape = std::ranges::find(shapes, "inflated", &report::EvolutionShape::name);
-    meshes.push_back({shape->positions, all[h]->white.faces});
-    cameras.push_back(report::cameraFor(meshes.back(), standardViews(all[h]->side).front().second,
-                                        size.width, size.height));
+    meshes.push_back({shape->positions, all[h].white.faces});
+    const auto from = all[h].side == "right" ? report::ViewName::Right : report::ViewName::Left;
+    cameras.push_back(report::cameraFor(meshes.back(), from, size.width, size.height));
     half = std::max(half, cameras.back().halfHeight);
   }
   report::ReportGlance glance{
-      kThicknessPlace, "Thickness, inflated",
+      kPatchPlace, "Thickness, inflated",
       "Right: 2 to 3 mm, crowns of gyri thicker than the floors of sulci, primary sensory and "
       "visual cortex thinnest. Wrong: stripes or spots thinner than 1 mm or thicker than 5 mm. "
       "Then: look at the slices there."};
   for (std::size_t h = 0; h < all.size(); ++h) {
     cameras[h].halfHeight = half;
     glance.views.emplace_back(
-        (all[h]->side.empty() ? "" : all[h]->side + ", ") + "lateral",
+        (all[h].side.empty() ? "" : all[h].side + ", ") + "lateral",
         report::SurfaceScene(meshes[h]).render(cameras[h], report::coloursOf(values[h], scale),
                                                report::Filling::Smooth, size));
   }
   glance.scale = scale;
   results.content().glance.push_back(std::move(glance));
-}
-
-void showThickness(ResultFolder& results, const std::vector<const Hemisphere*>& all) {
-  const auto map = addMap(results, all, "thickness.shape.gii", "thickness");
-  if (!map) return;
-  const report::SurfacePictureOptions size = viewSize();
-  const double half = commonHalfHeight(all);
-  report::ReportViews views;
-  views.scale = map->second;
-  for (std::size_t h = 0; h < all.size(); ++h) {
-    const auto colours = report::coloursOf(map->first[h], map->second);
-    for (const auto& [title, view] : standardViews(all[h]->side)) {
-      report::Camera camera = report::cameraFor(all[h]->pial, view, size.width, size.height);
-      camera.halfHeight = half;
-      views.views.push_back(
-          {(all[h]->side.empty() ? "" : all[h]->side + ", ") + title,
-           all[h]->scene->render(camera, colours, report::Filling::Smooth, size)});
-    }
-  }
-  glanceAtThickness(results, all, map->first, map->second);
-  views.id = kThicknessPlace;
-  views.title = "Thickness on the pial surface";
-  views.caption = "Grey: not measured, as on the medial wall.";
-  results.content().views.push_back(std::move(views));
-}
-
-/// The reader's maps on the hemispheres that they fit, for the view in three dimensions.
-void addGiven(ResultFolder& results, const std::vector<Hemisphere>& all,
-              const std::vector<GivenMap>& maps) {
-  for (std::size_t h = 0; h < all.size(); ++h) {
-    for (const GivenMap& map : maps) {
-      if (!map.fits(all[h].pial.vertexCount(), all[h].side)) continue;
-      results.content().evolutions[h].maps.push_back(
-          {map.values, report::scaleFor(map.values, map.name, map.unit)});
-    }
-  }
-}
-
-/// Regions for the view in three dimensions.
-void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
-  if (!isThere(file)) return;
-  const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
-  report::EvolutionLabels named{title, {}, {}};
-  std::map<Label, std::int32_t> entryOf;
-  for (const io::LabelEntry& entry : labels.table) {
-    if (entry.key == 0) continue;
-    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
-    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
-  }
-  for (const Label key : labels.keys) {
-    const auto found = entryOf.find(key);
-    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
-  }
-  evolution.labels.push_back(std::move(named));
 }
 
 /// The surface that the patch is of: its shape's name.
@@ -316,11 +249,9 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
                                        "The outlines must follow the borders of the grey ribbon.",
                                        report::makeMosaic(volume, outlines, mosaic)});
   if (places.empty()) return;
-  constexpr double kWidth = 36;  // mm
   report::MosaicOptions close = mosaic;
   close.tileHeight = 260;
-  report::SliceMosaic doubted =
-      report::makeCloseUps(volume, surfaces, {places.front()}, kWidth, close);
+  report::SliceMosaic doubted = report::makeCloseUps(volume, surfaces, {places.front()}, 36, close);
   results.content().glance.push_back(
       {kOutlinePlace,
        "First of " + std::to_string(places.size()) + " places to judge",
@@ -331,8 +262,7 @@ void showOutlines(ResultFolder& results, const std::vector<Hemisphere>& all,
        std::move(doubted.outlines)});
 }
 
-void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all,
-                           const FolderReportOptions& options) {
+void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
   for (const Hemisphere& h : all) {
     const auto map = mapNamed(h.step->folder / "thickness.shape.gii", h.pial.vertexCount());
     if (!map) continue;
@@ -340,45 +270,56 @@ void chartSurfaceThickness(ResultFolder& results, const std::vector<Hemisphere>&
     for (const double t : map->values) {
       if (t > 0) ribbon.push_back(t);
     }
-    report::ChartText words{"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
-                            "thickness [mm]", "share of vertices"};
-    if (auto reference = thicknessReference(options.references, *h.step)) {
-      words.behind = std::move(reference->values);
-      words.behindName = std::move(reference->name);
-    }
     results.content().charts.push_back(
-        {"", report::histogramSvg(asVector(ribbon), words), kThicknessCharts});
+        {"",
+         report::histogramSvg(asVector(ribbon),
+                              {"Cortical thickness" + (h.side.empty() ? "" : ", " + h.side),
+                               "thickness [mm]", "share of vertices"}),
+         kThicknessCharts});
   }
 }
 
 }  // namespace
 
+void addLabels(report::Evolution& evolution, const std::string& title, const fs::path& file) {
+  if (!isThere(file)) return;
+  const io::LabelMap labels = io::readVertexLabels(file, evolution.mesh.vertexCount());
+  report::EvolutionLabels named{title, {}, {}};
+  std::map<Label, std::int32_t> entryOf;
+  for (const io::LabelEntry& entry : labels.table) {
+    if (entry.key == 0) continue;
+    entryOf[entry.key] = static_cast<std::int32_t>(named.legend.size());
+    named.legend.push_back({entry.name, report::colourOfLabel(entry.key, entry.colour)});
+  }
+  for (const Label key : labels.keys) {
+    const auto found = entryOf.find(key);
+    named.entries.push_back(found == entryOf.end() ? -1 : found->second);
+  }
+  evolution.labels.push_back(std::move(named));
+}
+
 void showSurfaces(ResultFolder& results, const FolderReportOptions& options,
                   const std::vector<GivenMap>& maps) {
   std::vector<Hemisphere> all;
   for (const StepFolder* step : results.stepsOf("surface")) {
-    all.push_back({step,
-                   step->side(),
-                   io::readSurface(step->folder / "white.surf.gii").mesh,
-                   io::readSurface(step->folder / "pial.surf.gii").mesh,
-                   {}});
+    all.push_back({step, step->side(), io::readSurface(step->folder / "white.surf.gii").mesh,
+                   io::readSurface(step->folder / "pial.surf.gii").mesh});
   }
   if (all.empty()) return;
   std::ranges::sort(all, {}, &Hemisphere::side);
-  for (Hemisphere& h : all) h.scene.emplace(h.pial);
   for (const Hemisphere& h : all) results.content().evolutions.push_back(brainOf(results, h));
   results.attempt("Outlines on the image", [&] { showOutlines(results, all, options); });
-  std::vector<const Hemisphere*> shown;
-  for (const Hemisphere& h : all) shown.push_back(&h);
-  results.attempt("Thickness map", [&] { showThickness(results, shown); });
+  results.attempt("Thickness map", [&] { showThickness(results, all); });
   for (const auto& [file, word] : {std::pair{"curvature.shape.gii", "mean curvature"},
                                    std::pair{"sulc.shape.gii", "sulcal depth"},
                                    std::pair{"doubt.shape.gii", "doubt of the borders"}}) {
     results.attempt(word,
-                    [&, file = file, word = word] { (void)addMap(results, shown, file, word); });
+                    [&, file = file, word = word] { (void)addMap(results, all, file, word); });
   }
-  results.attempt("Given maps", [&] { addGiven(results, all, maps); });
-  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all, options); });
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    addGiven(results.content().evolutions[h], all[h].side, maps);
+  }
+  results.attempt("Thickness histogram", [&] { chartSurfaceThickness(results, all); });
 }
 
 }  // namespace explica::pipeline

@@ -13,8 +13,6 @@
 namespace explica::pipeline {
 namespace {
 
-constexpr int kSmallTile = 150;  // pixels, of tiles where two images are compared
-
 /// The template's structures on the T1, where one was brought there.
 void showTemplate(ResultFolder& results, const StepFolder& step,
                   const report::MosaicOptions& options) {
@@ -43,7 +41,7 @@ void showPreparation(ResultFolder& results, const StepFolder& step,
   io::VolumeReadOptions reading{.dimension = 3};
   const Volume<float> image = io::readScalars(*file, reading).volume;
   report::MosaicOptions small = options;
-  small.tileHeight = kSmallTile;
+  small.tileHeight = 150;
   const auto brain = brainOf(step, image.grid);
   small.subject = brain ? &*brain : nullptr;
   const auto compare = [&](const char* with, const std::string& title, const std::string& caption,
@@ -86,7 +84,7 @@ void showTissues(ResultFolder& results, const FolderReportOptions& options) {
     const auto labels =
         io::readLabels(step->folder / (half ? "hemisphere.nii.gz" : "seg.nii.gz")).volume;
     results.content().mosaics.push_back(
-        {kTissuePlace, "Tissues" + (step->side().empty() ? "" : ", " + step->side()),
+        {kTissuePlace, "Tissues" + step->sideWords(),
          half ? "Green: white matter, filled. Blue: grey ribbon. Orange: fluid. Yellow: tissue cut "
                 "off at the midline and stem."
               : "Orange: fluid. Blue: grey matter. Green: white matter.",

@@ -23,8 +23,7 @@ constexpr std::size_t kFewFrames = 16;   // where several patches share the page
 /// An unfolding's surfaces: where it began, the states on the way, and the region.
 struct Unfolded {
   std::optional<TriangleMesh> whole;  ///< the surface that the region is of, if it is still there
-  std::vector<TriangleMesh> frames;   ///< from the start to the end
-  std::vector<std::string> titles;    ///< of the frames
+  ShownFrames frames;                 ///< from the start to the end
   std::vector<std::int32_t> region;   ///< vertices
   bool detached = false;              ///< the region was unfolded alone
   std::optional<Point> viewpoint;
@@ -67,27 +66,17 @@ std::optional<Point> viewpointOf(const StepFolder& step, const Unfolded& unfolde
   if (const auto used = pointIn(step.summary, "viewpoint")) return used;
   if (const auto given = pointIn(options, "viewpoint")) return given;
   const auto direction = pointIn(options, "direction");
-  if (!direction || !(direction->norm() > 0) || unfolded.frames.empty()) return {};
-  return centreOf(unfolded.frames.front(), unfolded.region) +
+  if (!direction || !(direction->norm() > 0)) return {};
+  return centreOf(unfolded.frames.meshes.front(), unfolded.region) +
          options.value("distance", 1000.0) * direction->normalized();
 }
 
 Unfolded readUnfolded(const StepFolder& step, std::size_t mostFrames) {
   Unfolded unfolded;
+  unfolded.frames = framesOf(step, "unfolded.surf.gii", mostFrames);
+  const TriangleMesh& after = unfolded.frames.meshes.back();
   const auto source = inputOf(step, "SURFACE");
   if (source && isThere(*source)) unfolded.whole = io::readSurface(*source).mesh;
-  ShownFrames frames = framesOf(step, mostFrames);
-  unfolded.frames = std::move(frames.meshes);
-  unfolded.titles = std::move(frames.titles);
-  const TriangleMesh after = io::readSurface(step.folder / "unfolded.surf.gii").mesh;
-  if (unfolded.frames.empty()) {
-    if (unfolded.whole && unfolded.whole->vertexCount() == after.vertexCount()) {
-      unfolded.frames.push_back({unfolded.whole->positions, after.faces});
-      unfolded.titles.emplace_back("before");
-    }
-    unfolded.frames.push_back(after);
-    unfolded.titles.emplace_back("after");
-  }
   if (unfolded.whole && unfolded.whole->vertexCount() != after.vertexCount())
     unfolded.whole.reset();
   unfolded.detached = unfolded.whole && unfolded.whole->faceCount() > after.faceCount();
@@ -110,23 +99,6 @@ Faces withSurroundings(const Faces& part, const TriangleMesh& whole) {
   }
   faces.conservativeResize(count, 3);
   return faces;
-}
-
-/// Maps of the unfolding mean something in its region only.
-void addOwnMaps(const StepFolder& step, const Unfolded& unfolded, report::Evolution& evolution) {
-  std::vector<bool> inRegion(static_cast<std::size_t>(evolution.mesh.vertexCount()), false);
-  for (const std::int32_t v : unfolded.region) inRegion[v] = true;
-  for (const char* file : {"visibility.shape.gii", "distortion.shape.gii"}) {
-    if (!step.has(file)) continue;
-    for (io::VertexMap& map :
-         io::readVertexMaps(step.folder / file, evolution.mesh.vertexCount())) {
-      for (Eigen::Index v = 0; v < map.values.size(); ++v) {
-        if (!inRegion[v]) map.values[v] = kNaN;
-      }
-      evolution.maps.push_back(
-          {map.values, report::scaleFor(map.values, mapWords(map.name), map.unit)});
-    }
-  }
 }
 
 /// The patch opens on its hemisphere, where the page shows that; else it is shown by itself.
@@ -153,29 +125,16 @@ void joinTheBrain(std::vector<report::Evolution>& shown, const std::string& side
   }
 }
 
-/// What the patch is coloured by in the pictures before and after, and what they are called.
-struct PatchPaint {
-  std::string id, title, caption;
-  report::SurfacePaint paint;
-};
-
 /// Sulci painted on the surface show on the opened patch what was folded; without a curvature the
 /// patch itself is coloured.
-PatchPaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount, const StepFolder* surface,
-                   const std::string& side) {
-  PatchPaint folds{kPatchViewsPlace,
-                   "The patch" + (side.empty() ? "" : " on the " + side) + " before and after",
-                   "",
-                   {}};
+report::SurfacePaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount,
+                             const StepFolder* surface) {
+  report::SurfacePaint paint;
+  paint.region.setZero(vertexCount);
+  for (const std::int32_t v : unfolded.region) paint.region[v] = 1;
   const auto curvature = surface != nullptr
                              ? mapNamed(surface->folder / "curvature.shape.gii", vertexCount)
                              : std::nullopt;
-  folds.caption =
-      std::string("From the viewpoint and from the side, to one scale, the patch's rim dark: ") +
-      (curvature ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.");
-  report::SurfacePaint& paint = folds.paint;
-  paint.region.setZero(vertexCount);
-  for (const std::int32_t v : unfolded.region) paint.region[v] = 1;
   if (curvature) {
     paint.values = curvature->values;
     paint.scale = report::scaleFor(paint.values, curvature->name, curvature->unit,
@@ -183,114 +142,87 @@ PatchPaint foldsOf(const Unfolded& unfolded, Eigen::Index vertexCount, const Ste
   } else {
     paint.labels = paint.region;
   }
-  return folds;
+  return paint;
 }
 
-PatchPaint paintOf(const Unfolded& unfolded, const GivenMap& map) {
-  PatchPaint given{"",
-                   map.name + " on the patch before and after",
-                   "From the viewpoint and from the side, with the same colours; what lies off the "
-                   "patch is pale, what is not known grey.",
-                   {}};
-  given.paint.region.setZero(map.values.size());
-  for (const std::int32_t v : unfolded.region) given.paint.region[v] = 1;
-  given.paint.values = map.values;
-  Eigen::VectorXd onPatch(static_cast<Eigen::Index>(unfolded.region.size()));
-  for (std::size_t n = 0; n < unfolded.region.size(); ++n) {
-    onPatch[n] = map.values[unfolded.region[n]];
+/// From the viewpoint, before and after to one scale, filled by the region: beside the verdict.
+void glanceAtPatch(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
+                   const std::string& side) {
+  const std::array meshes = {unfolded.whole ? &*unfolded.whole : &unfolded.frames.meshes.front(),
+                             &unfolded.frames.meshes.back()};
+  const report::SurfacePaint paint = foldsOf(unfolded, meshes[0]->vertexCount(), surface);
+  const bool isSmooth = paint.values.size() > 0;
+  report::FigureView front;
+  front.towards = (centreOf(*meshes[0], unfolded.region) - *unfolded.viewpoint).normalized();
+  front.focus = unfolded.region;
+  report::ReportGlance glance{
+      kPatchPlace, "Patch" + (side.empty() ? "" : " on the " + side) + " before and after",
+      std::string("From the viewpoint, the patch's rim dark: ") +
+          (isSmooth ? "gyri blue, sulci brown." : "the patch coloured, its surroundings pale.") +
+          (unfolded.detached ? " It was unfolded alone, and is drawn apart from the surface."
+                             : "") +
+          " Right: the sulci's floors face the reader, the rim joins the surroundings. Wrong: "
+          "sulci still folded, a torn or twisted rim. Then: more iterations or a smaller patch."};
+  const report::SurfacePictureOptions size{.width = 360, .height = 280};
+  std::array<report::Camera, 2> cameras;
+  double half = 0;
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    cameras[n] = report::cameraOf(*meshes[n], front, size.width, size.height);
+    half = std::max(half, cameras[n].halfHeight);
   }
-  given.paint.scale = report::scaleFor(onPatch, map.name, map.unit);
-  return given;
-}
-
-/// Scenes and cameras for pictures of the patch before and after.
-class PatchPictures {
- public:
-  explicit PatchPictures(const Unfolded& unfolded)
-      : unfolded_(unfolded),
-        before_(unfolded.whole ? *unfolded.whole : unfolded.frames.front()),
-        after_(unfolded.frames.back()),
-        sceneBefore_(before_),
-        sceneAfter_(after_) {
-    front_.towards = (centreOf(before_, unfolded.region) - *unfolded.viewpoint).normalized();
-    front_.focus = unfolded.region;
-    side_ = front_;
-    const Vector across = front_.towards.cross(Vector(0, 0, 1));
-    side_.towards =
-        front_.towards + 1.7 * (across.norm() > 1e-3 ? across.normalized() : Vector(1, 0, 0));
+  const auto colours = report::coloursOf(paint, meshes[0]->vertexCount());
+  const std::vector<std::int32_t> rim(paint.region.begin(), paint.region.end());
+  const auto filling = isSmooth ? report::Filling::Smooth : report::Filling::Discrete;
+  for (std::size_t n = 0; n < meshes.size(); ++n) {
+    cameras[n].halfHeight = half;
+    glance.views.emplace_back(
+        n == 0 ? "before" : "after",
+        report::SurfaceScene(*meshes[n]).render(cameras[n], colours, filling, size, rim));
   }
-
-  /// From the viewpoint and from the side, filled by the region.
-  [[nodiscard]] report::ReportViews draw(const PatchPaint& painted) const {
-    const auto colours = report::coloursOf(painted.paint, before_.vertexCount());
-    const bool smooth = painted.paint.values.size() > 0;
-    const std::vector<std::int32_t> rim(painted.paint.region.begin(), painted.paint.region.end());
-    report::SurfacePictureOptions size{.width = 360, .height = 280};
-    report::ReportViews views;
-    views.id = painted.id;
-    views.title = painted.title;
-    views.caption = painted.caption;
-    if (unfolded_.detached) {
-      views.caption += " It was unfolded alone, and is drawn apart from the surface.";
-    }
-    for (const bool folded : {true, false}) {
-      for (const report::FigureView* view : {&front_, &side_}) {
-        views.views.push_back(
-            {std::string(folded ? "before" : "after") +
-                 (view == &front_ ? ", from the viewpoint" : ", from the side"),
-             (folded ? sceneBefore_ : sceneAfter_)
-                 .render(cameraFor(folded, *view, size), colours,
-                         smooth ? report::Filling::Smooth : report::Filling::Discrete, size, rim)});
-      }
-    }
-    if (smooth) views.scale = painted.paint.scale;
-    return views;
-  }
-
- private:
-  /// On the patch, before and after to one scale.
-  [[nodiscard]] report::Camera cameraFor(bool folded, const report::FigureView& view,
-                                         const report::SurfacePictureOptions& size) const {
-    report::Camera before = report::cameraOf(before_, view, size.width, size.height);
-    report::Camera after = report::cameraOf(after_, view, size.width, size.height);
-    before.halfHeight = after.halfHeight = std::max(before.halfHeight, after.halfHeight);
-    return folded ? before : after;
-  }
-
-  const Unfolded& unfolded_;
-  const TriangleMesh& before_;
-  const TriangleMesh& after_;
-  report::SurfaceScene sceneBefore_, sceneAfter_;
-  report::FigureView front_, side_;
-};
-
-void drawBeforeAndAfter(ResultFolder& results, const Unfolded& unfolded, const StepFolder* surface,
-                        const std::string& side, const std::vector<const GivenMap*>& maps) {
-  const PatchPictures pictures(unfolded);
-  const Eigen::Index count = unfolded.frames.front().vertexCount();
-  results.content().views.push_back(pictures.draw(foldsOf(unfolded, count, surface, side)));
-  for (const GivenMap* map : maps) {
-    results.content().views.push_back(pictures.draw(paintOf(unfolded, *map)));
-  }
+  if (isSmooth) glance.scale = paint.scale;
+  results.content().glance.push_back(std::move(glance));
 }
 
 }  // namespace
 
-ShownFrames framesOf(const StepFolder& step, std::size_t most) {
+ShownFrames framesOf(const StepFolder& step, const std::string& end, std::size_t most) {
   ShownFrames frames;
   for (const fs::path& file : fewFrames(step.folder, most)) {
     frames.meshes.push_back(io::readSurface(file).mesh);
     frames.titles.push_back(titleOf(file, step.summary));
   }
+  if (!frames.meshes.empty() || end.empty()) return frames;
+  const TriangleMesh after = io::readSurface(step.folder / end).mesh;
+  const auto source = inputOf(step, "SURFACE");
+  if (source && isThere(*source)) {
+    TriangleMesh before = io::readSurface(*source).mesh;
+    if (before.vertexCount() == after.vertexCount()) {
+      frames.meshes.push_back({std::move(before.positions), after.faces});
+      frames.titles.emplace_back("before");
+    }
+  }
+  frames.meshes.push_back(after);
+  frames.titles.emplace_back("after");
   return frames;
+}
+
+void addMaps(report::Evolution& evolution, const fs::path& file,
+             const std::vector<std::int32_t>& region) {
+  if (!isThere(file)) return;
+  for (const io::VertexMap& map : io::readVertexMaps(file, evolution.mesh.vertexCount())) {
+    Eigen::VectorXd known = map.values;
+    if (!region.empty()) known.setConstant(kNaN);
+    for (const std::int32_t v : region) known[v] = map.values[v];
+    evolution.maps.push_back({known, report::scaleFor(known, mapWords(map.name), map.unit)});
+  }
 }
 
 void showUnfolding(ResultFolder& results, const StepFolder& step,
                    const std::vector<GivenMap>& maps) {
   const std::size_t patches = results.stepsOf("unfold").size();
   const Unfolded unfolded = readUnfolded(step, patches > 1 ? kFewFrames : kMostFrames);
-  report::Evolution evolution = report::evolutionOf(unfolded.frames);
-  evolution.frameTitles = unfolded.titles;
+  report::Evolution evolution = report::evolutionOf(unfolded.frames.meshes);
+  evolution.frameTitles = unfolded.frames.titles;
   evolution.region = unfolded.region;
   evolution.detached = unfolded.detached;
   evolution.viewpoint = unfolded.viewpoint;
@@ -298,20 +230,30 @@ void showUnfolding(ResultFolder& results, const StepFolder& step,
     evolution.mesh.faces = withSurroundings(evolution.mesh.faces, *unfolded.whole);
     evolution.mesh.positions = unfolded.whole->positions;
   }
-  const StepFolder* surface = results.beside(step, "surface");
-  results.attempt("Maps of the unfolding", [&] { addOwnMaps(step, unfolded, evolution); });
-  std::vector<const GivenMap*> fitting;
-  for (const GivenMap& map : maps) {
-    if (!map.fits(evolution.mesh.vertexCount(), step.side())) continue;
-    fitting.push_back(&map);
-    evolution.maps.push_back({map.values, report::scaleFor(map.values, map.name, map.unit)});
-  }
+  results.attempt("Maps of the unfolding", [&] {
+    addMaps(evolution, step.folder / "visibility.shape.gii", unfolded.region);
+    addMaps(evolution, step.folder / "distortion.shape.gii", unfolded.region);
+  });
+  addGiven(evolution, step.side(), maps);
   if (!unfolded.region.empty() && unfolded.viewpoint) {
-    results.attempt("Before and after",
-                    [&] { drawBeforeAndAfter(results, unfolded, surface, step.side(), fitting); });
+    results.attempt("Before and after", [&] {
+      glanceAtPatch(results, unfolded, results.beside(step, "surface"), step.side());
+    });
   }
   evolution.title = titleOf(step.name);
   joinTheBrain(results.content().evolutions, step.side(), std::move(evolution));
+}
+
+void showInflation(ResultFolder& results, const StepFolder& step) {
+  const ShownFrames frames = framesOf(step, "inflated.surf.gii");
+  report::Evolution evolution = report::evolutionOf(frames.meshes);
+  evolution.title = titleOf(step.name);
+  evolution.frameTitles = frames.titles;
+  results.attempt("Maps of the inflation", [&] {
+    addMaps(evolution, step.folder / "visibility.shape.gii");
+    addMaps(evolution, step.folder / "distortion.shape.gii");
+  });
+  results.content().evolutions.push_back(std::move(evolution));
 }
 
 }  // namespace explica::pipeline

@@ -1,10 +1,10 @@
   'phantom shell')
     _arguments \
-      '--size[voxels along the first axis (8 to 1024)]:size: ' \
-      '--spacing[voxel size along the first axis (mm)]:spacing: ' \
-      '--inner-radius[inner radius over half the grid'\''s width]:inner-radius: ' \
-      '--outer-radius[outer radius over half the grid'\''s width]:outer-radius: ' \
-      '--aspect[voxel size along each axis over --spacing]:aspect: ' \
+      '--size[voxels along the first axis (8 to 1024; default 64)]:size: ' \
+      '--spacing[voxel size along the first axis (mm; default 1)]:spacing: ' \
+      '--inner-radius[inner radius over half the grid'\''s width (default 0.5)]:inner-radius: ' \
+      '--outer-radius[outer radius over half the grid'\''s width (default 0.8)]:outer-radius: ' \
+      '--aspect[voxel size along each axis over --spacing (default 1,1,1)]:aspect: ' \
       '--out[folder for the results; made if absent, refused if not empty]:out:_files' \
       '--force[write into a folder that is not empty, replacing earlier results]' \
       '--config[JSON file with option values; the command line wins]:config:_files' \

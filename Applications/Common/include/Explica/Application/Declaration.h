@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace explica::app {
@@ -87,29 +88,32 @@ struct OutputSlot {
 class Declaration {
  public:
   /// One line, without a full stop: "thickness of the tissue between two boundaries".
-  Declaration& synopsis(std::string line);
+  Declaration& synopsis(std::string line) { return set(synopsisText, std::move(line)); }
   /// A paragraph or two on what is computed and when to use which option.
-  Declaration& description(std::string text);
+  Declaration& description(std::string text) { return set(descriptionText, std::move(text)); }
   /// A paper, as "Jones, Buchbinder, Aharon 2000, Human Brain Mapping 11:12-32".
-  Declaration& reference(std::string citation);
+  Declaration& reference(std::string citation) { return append(references, std::move(citation)); }
   /// A command line that works, and what it does.
-  Declaration& example(std::string commandLine, std::string what);
+  Declaration& example(std::string commandLine, std::string what) {
+    return append(examples, Example{std::move(commandLine), std::move(what)});
+  }
 
   /// A file to read, by position.  `name` in capitals: "SEG".  A std::optional<std::string> may be
   /// left out; a std::vector<std::string> takes one or more.
-  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
-                     std::string& path);
-  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
-                     std::optional<std::string>& path);
-  Declaration& input(const std::string& name, FileKind kind, const std::string& help,
-                     std::vector<std::string>& paths);
+  template <class Path>
+  Declaration& input(const std::string& inputName, FileKind kind, const std::string& help,
+                     Path& path) {
+    return add(provenance::makeOption(Field{inputName, "", help}, path), "", true,
+               !provenance::detail::Held<Path>::isOptional, kind);
+  }
 
-  /// A file to read, by option: --mask FILE.  A vector's option may be repeated.
-  Declaration& inputOption(const std::string& name, FileKind kind, const std::string& help,
-                           std::optional<std::string>& path,
-                           const std::string& category = "Inputs");
-  Declaration& inputOption(const std::string& name, FileKind kind, const std::string& help,
-                           std::vector<std::string>& paths, const std::string& category = "Inputs");
+  /// A file to read, by option: --mask FILE; a std::optional.  A vector's option may be repeated.
+  template <class Path>
+  Declaration& inputOption(const std::string& optionName, FileKind kind, const std::string& help,
+                           Path& path, const std::string& category = "Inputs") {
+    return add(provenance::makeOption(Field{optionName, "", help}, path), category, false, false,
+               kind);
+  }
 
   /// A word by position that is not a file: participant|group.
   template <class T>
@@ -117,10 +121,17 @@ class Declaration {
     return add(provenance::makeOption(field, value), "", true, true);
   }
 
+  /// The heading of help that the next options stand under.
+  Declaration& category(std::string heading) { return set(category_, std::move(heading)); }
   /// One option.
   template <class T>
-  Declaration& option(const std::string& category, const Field& field, T& value) {
-    return add(provenance::makeOption(field, value), category, false, false);
+  Declaration& option(const Field& field, T& value) {
+    return add(provenance::makeOption(field, value), category_, false, false);
+  }
+  /// One without a unit and of any value.
+  template <class T>
+  Declaration& option(std::string_view optionName, std::string_view help, T& value) {
+    return option(Field{optionName, "", help}, value);
   }
 
   /// All options of a struct that has a `describe` function (Core/Describe.h).  `prefix` goes
@@ -133,36 +144,42 @@ class Declaration {
     return *this;
   }
 
-  /// Says that a list option takes every word up to the next option: --participant-label 01 02.
-  /// Only for commands whose positionals users put first.
-  Declaration& severalWords(std::string_view name);
-  /// Says that an option declared before names a place where something is written, so that a
-  /// stranger's record cannot set it to any file of this machine.
-  Declaration& namesOutput(std::string_view name);
-  /// Says that the files of an option are of this side of the brain: --left.
-  Declaration& ofSide(std::string_view name, Hemisphere side);
-  /// Says that an option's files are another person's: of another mesh; while `*mirrored`, of any
-  /// side.
-  Declaration& ofAnother(std::string_view name, const bool& mirrored);
-  /// Says that each of an option's files stands for itself, so that they may be of both sides.
-  Declaration& oneByOne(std::string_view name);
-  /// Says that an option and any of the others would leave one of the two without effect.
+  // Of an option or positional declared before.
+  /// A list option takes every word up to the next option: --participant-label 01 02.  Only for
+  /// commands whose positionals users put first.
+  Declaration& severalWords(std::string_view of) { return set(get(of).severalWords, true); }
+  /// It names a place where something is written, so that a stranger's record cannot set it to any
+  /// file of this machine.
+  Declaration& namesOutput(std::string_view of) { return set(get(of).namesOutput, true); }
+  /// Its files are of this side of the brain: --left.
+  Declaration& ofSide(std::string_view of, Hemisphere side) { return set(get(of).side, side); }
+  /// Its files are another person's: of another mesh; while `*mirrored`, of any side.
+  Declaration& ofAnother(std::string_view of, const bool& mirrored) {
+    return set(get(of).ofAnother, &mirrored);
+  }
+  /// Each of its files stands for itself, so that they may be of both sides.
+  Declaration& oneByOne(std::string_view of) { return set(get(of).oneByOne, true); }
+  /// It and any of the others would leave one of the two without effect.
   Declaration& excludes(const std::string& name, const std::vector<std::string>& others);
-  /// Says that each of the options has no effect unless one of the conditions holds: an option that
-  /// is given ("label"), or one that has a value ("method=thesis").
+  /// Each of the options has no effect unless one of the conditions holds: an option that is given
+  /// ("label"), or one that has a value ("method=thesis").
   Declaration& needs(const std::vector<std::string>& names,
                      const std::vector<std::string>& conditions);
-  /// Says that an option or positional declared before must be given.
-  Declaration& require(std::string_view name);
-  /// Leaves out options declared before, e.g. one of a struct that makes no sense here.
-  Declaration& without(std::string_view name);
+  /// It must be given.
+  Declaration& require(std::string_view of) { return set(get(of).required, true); }
+  /// It is left out, e.g. one of a struct that makes no sense here.
+  Declaration& without(std::string_view unwanted);
   /// Takes over every option (not the positionals) of another declaration, names prefixed.
   Declaration& include(const Declaration& other, std::string_view prefix);
 
   /// A file written into --out.
-  Declaration& output(std::string pattern, FileKind kind, std::string help);
+  Declaration& output(std::string pattern, FileKind kind, std::string help) {
+    return append(outputs, OutputSlot{std::move(pattern), kind, std::move(help), false});
+  }
   /// As output(), for a file whose bytes hold times or the like.
-  Declaration& varyingOutput(std::string pattern, FileKind kind, std::string help);
+  Declaration& varyingOutput(std::string pattern, FileKind kind, std::string help) {
+    return append(outputs, OutputSlot{std::move(pattern), kind, std::move(help), true});
+  }
   /// What `context.results(stage)` will say: the results that `describe(Results&, const Stage&)`
   /// lists (Core/Results.h), here of a default-constructed one.
   template <class Stage>
@@ -173,19 +190,21 @@ class Declaration {
     return *this;
   }
   /// The command writes no directory: no --out, no summary, no record.
-  Declaration& withoutOutput();
+  Declaration& withoutOutput() { return set(writesOutput, false); }
   /// Outputs go straight into --out, which may hold files already: for commands made of steps that
   /// each keep whole-or-not-at-all themselves.
-  Declaration& inPlace();
+  Declaration& inPlace() { return set(writesInPlace, true); }
   /// The results of --out are another command's, run by Context::runThrough.
-  Declaration& writesThrough();
-  /// While `*reuse` is true, --out may hold files already (as with --resume).
-  Declaration& reuseOutputIf(const bool& reuse);
+  Declaration& writesThrough() { return set(handsOutputOn, true); }
+  /// While `*isOn`, --out may hold files already (as with --resume).
+  Declaration& reuseOutputIf(const bool& isOn) { return set(reuse, &isOn); }
   /// Which share of an inPlace() folder's work the options ask for: runs on different shares may be
   /// at work at the same time.  The name is part of a file's; empty: all of it.
-  Declaration& shareOfWork(std::function<std::string()> shareName);
+  Declaration& shareOfWork(std::function<std::string()> nameOfShare) {
+    return set(share, std::move(nameOfShare));
+  }
   /// Where to write if --out is not given.
-  Declaration& defaultOut(const std::string& folder);
+  Declaration& defaultOut(const std::string& folder) { return set(fallbackOut, &folder); }
 
   /// The option or positional of that name, or nullptr.
   [[nodiscard]] Parameter* find(std::string_view name);
@@ -210,10 +229,22 @@ class Declaration {
   const std::string* fallbackOut = nullptr;
 
  private:
+  template <class T, class Value>
+  Declaration& set(T& member, Value&& value) {
+    member = std::forward<Value>(value);
+    return *this;
+  }
+  template <class T>
+  Declaration& append(std::vector<T>& list, T one) {
+    list.push_back(std::move(one));
+    return *this;
+  }
   /// @throws std::logic_error  there is no option or positional of that name
   Parameter& get(std::string_view name);
   Declaration& add(provenance::Option option, const std::string& category, bool positional,
                    bool required, std::optional<FileKind> file = {});
+
+  std::string category_;
 };
 
 }  // namespace explica::app

@@ -2,27 +2,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Provenance/Json.h"
+#include "Explica/Application/Declaration.h"
 
 #include <string>
 
 namespace explica::app {
 
-using provenance::Json;
+// What other tools read of the commands, from their declarations.
 
-// Each function turns declarations, as `explica COMMAND --describe` prints them, into what another
-// tool reads.  `version` is the software's.
+[[nodiscard]] std::string bashCompletion();
+[[nodiscard]] std::string zshCompletion();
 
-[[nodiscard]] std::string bashCompletionOf(const Json& commands);
-[[nodiscard]] std::string zshCompletionOf(const Json& commands);
-
+/// "explica-study-group".
+[[nodiscard]] std::string manPageName(const std::string& command);
 /// Manual page, section 1, in roff.
-[[nodiscard]] std::string manPageOf(const Json& command, const std::string& version);
+[[nodiscard]] std::string manPageOf(const Declaration& declaration);
 
 /// The manual page of `explica` itself: its commands.
-[[nodiscard]] std::string overviewManPageOf(const Json& commands, const std::string& version);
-
-/// All declarations, in the order of their names.
-[[nodiscard]] Json describeAllCommands();
+[[nodiscard]] std::string overviewManPage();
 
 }  // namespace explica::app

@@ -19,8 +19,6 @@ struct FolderReportOptions {
   /// Files of vertex data to show on every surface that they fit; not described below, for they
   /// are inputs.
   std::vector<std::string> maps = {};
-  /// Folders of other people's results, whose thickness is drawn behind this one's; inputs, too.
-  std::vector<std::string> references = {};
 };
 
 template <class Visitor>
@@ -42,7 +40,7 @@ void describe(FolderReportOptions& options, Visitor&& visit) {
                                                   const Monitor& monitor = {});
 
 /// A small picture that tells one result from another at a glance: the opened patch, else the
-/// thickness from the side; none where a report shows neither.
+/// thickness from a side; none where a report shows neither.
 [[nodiscard]] std::optional<report::Picture> thumbnailOf(const report::ReportContent& content);
 
 }  // namespace explica::pipeline

@@ -11,28 +11,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace explica::provenance {
-
-/// A member whose values have names (an enum, or an optional or list of one), seen as words.
-struct ChoiceTarget {
-  std::vector<std::string> choices;                            ///< every word, in order
-  bool optional = false;                                       ///< may be unset
-  bool list = false;                                           ///< holds any number of words
-  std::function<std::vector<std::string>()> get;               ///< the words held now
-  std::function<void(const std::vector<std::string>& w)> set;  ///< throws InvalidInput
-};
-
-/// Where an option's value lives: a typed pointer into the option struct.
-using OptionTarget =
-    std::variant<bool*, int*, double*, std::string*, Eigen::Vector2d*, Eigen::Vector3d*,
-                 std::optional<bool>*, std::optional<int>*, std::optional<double>*,
-                 std::optional<std::string>*, std::optional<Eigen::Vector2d>*,
-                 std::optional<Eigen::Vector3d>*, std::vector<int>*, std::vector<double>*,
-                 std::vector<std::string>*, std::vector<Eigen::Vector2d>*,
-                 std::vector<Eigen::Vector3d>*, ChoiceTarget>;
 
 /// One option of a struct, with its type erased: what parser, JSON, help, descriptors and Python
 /// share.  It refers to the struct it was listed from, which must outlive it.
@@ -40,20 +21,20 @@ struct Option {
   std::string name;
   std::string unit;
   std::string help;
-  std::string category;  ///< heading in help and descriptors; set by whoever presents the option
-  OptionTarget target;
   double least = -std::numeric_limits<double>::infinity();  ///< smallest number accepted
   double most = std::numeric_limits<double>::infinity();    ///< largest number accepted
+  std::string type;         ///< "flag", "integer", "number", "text", "choice", "point2" or "point3"
+  bool isOptional = false;  ///< may be unset, and has no value until it is set
+  bool isList = false;      ///< takes any number of values
+  std::vector<std::string> choices;                 ///< words that a choice may take
+  const void* place = nullptr;                      ///< the member of the struct
+  std::function<std::vector<std::string>()> words;  ///< its values now; none if unset
+  /// Sets the values; none empties a list and unsets an optional.
+  std::function<void(const Option& self, const std::vector<std::string>& words)> setWords;
+  std::string category = {};  ///< heading in help and descriptors; set by whoever presents it
 
-  /// "flag", "integer", "number", "text", "choice", "point2" or "point3".
-  [[nodiscard]] std::string type() const;
-  [[nodiscard]] bool isFlag() const { return type() == "flag"; }
-  /// May be unset, and has no value until it is set.
-  [[nodiscard]] bool isOptional() const;
-  /// Takes any number of values.
-  [[nodiscard]] bool isList() const;
-  /// Words that a choice may take; empty for other types.
-  [[nodiscard]] std::vector<std::string> choices() const;
+  [[nodiscard]] bool isFlag() const { return type == "flag"; }
+  [[nodiscard]] bool isPoint() const { return type == "point2" || type == "point3"; }
   /// The range of its numbers in words: "1 to 1000", "at least 1", "above 0"; empty if there is
   /// none.
   [[nodiscard]] std::string range() const;
@@ -62,77 +43,114 @@ struct Option {
   /// Sets the value from a user's words: one, or several for a list.  Points and lists of numbers
   /// or choices separate by commas; lists of text and of points take one element per word.
   /// @throws UsageError  names the option, the text and what is expected
-  void setText(const std::vector<std::string>& words);
+  void setText(const std::vector<std::string>& given);
 };
 
 namespace detail {
 
-template <NamedEnum Enum>
-std::vector<std::string> words() {
-  std::vector<std::string> all;
-  for (const auto& [value, name] : enumWords(Enum{})) all.emplace_back(name);
-  return all;
-}
+/// What a member holds, how often.
+template <class T>
+struct Held {
+  using Element = T;
+  static constexpr bool isOptional = false, isList = false;
+};
+template <class T>
+struct Held<std::optional<T>> : Held<T> {
+  static constexpr bool isOptional = true;
+};
+template <class T>
+struct Held<std::vector<T>> : Held<T> {
+  static constexpr bool isList = true;
+};
 
 template <class T>
-struct Target {
-  static OptionTarget of(T& value) { return &value; }
-};
+constexpr const char* kTypeName = "choice";
+template <>
+inline constexpr const char* kTypeName<bool> = "flag";
+template <>
+inline constexpr const char* kTypeName<int> = "integer";
+template <>
+inline constexpr const char* kTypeName<double> = "number";
+template <>
+inline constexpr const char* kTypeName<std::string> = "text";
+template <>
+inline constexpr const char* kTypeName<Eigen::Vector2d> = "point2";
+template <>
+inline constexpr const char* kTypeName<Eigen::Vector3d> = "point3";
 
-template <NamedEnum Enum>
-struct Target<Enum> {
-  static OptionTarget of(Enum& value) {
-    return ChoiceTarget{
-        words<Enum>(), false, false,
-        [&value] { return std::vector<std::string>{std::string(nameOf(value))}; },
-        [&value](const std::vector<std::string>& w) { value = valueOf<Enum>(w.at(0)); }};
-  }
-};
+[[noreturn]] void refuse(const Option& option, std::string_view word, const std::string& expected);
 
+// From a value to the user's word and back.
+[[nodiscard]] std::string wordOf(bool value);
+[[nodiscard]] std::string wordOf(int value);
+[[nodiscard]] std::string wordOf(double value);
+[[nodiscard]] std::string wordOf(const std::string& value);
+[[nodiscard]] std::string wordOf(const Eigen::Ref<const Eigen::VectorXd>& value);
 template <NamedEnum Enum>
-struct Target<std::optional<Enum>> {
-  static OptionTarget of(std::optional<Enum>& value) {
-    return ChoiceTarget{words<Enum>(), true, false,
-                        [&value] {
-                          std::vector<std::string> held;
-                          if (value) held.emplace_back(nameOf(*value));
-                          return held;
-                        },
-                        [&value](const std::vector<std::string>& w) {
-                          value.reset();
-                          if (!w.empty()) value = valueOf<Enum>(w[0]);
-                        }};
-  }
-};
-
+[[nodiscard]] std::string wordOf(Enum value) {
+  return std::string(nameOf(value));
+}
+void read(const Option& option, const std::string& word, bool& value);
+void read(const Option& option, const std::string& word, int& value);
+void read(const Option& option, const std::string& word, double& value);
+void read(const Option& option, const std::string& word, std::string& value);
+void read(const Option& option, const std::string& word, Eigen::Vector2d& value);
+void read(const Option& option, const std::string& word, Eigen::Vector3d& value);
 template <NamedEnum Enum>
-struct Target<std::vector<Enum>> {
-  static OptionTarget of(std::vector<Enum>& value) {
-    return ChoiceTarget{words<Enum>(), false, true,
-                        [&value] {
-                          std::vector<std::string> held;
-                          for (const Enum v : value) held.emplace_back(nameOf(v));
-                          return held;
-                        },
-                        [&value](const std::vector<std::string>& w) {
-                          value.clear();
-                          for (const auto& word : w) value.push_back(valueOf<Enum>(word));
-                        }};
+void read(const Option& option, const std::string& word, Enum& value) {
+  for (const auto& [candidate, name] : enumWords(Enum{})) {
+    if (name == word) return static_cast<void>(value = candidate);
   }
-};
+  refuse(option, word, "one of " + choicesOf<Enum>(", "));
+}
 
 }  // namespace detail
 
 /// One option from a name and the place of its value.
 template <class T>
 [[nodiscard]] Option makeOption(const Field& field, T& value) {
-  return Option{std::string(field.name),
+  using Held = detail::Held<T>;
+  using Element = typename Held::Element;
+  Option option{std::string(field.name),
                 std::string(field.unit),
                 std::string(field.help),
-                {},
-                detail::Target<T>::of(value),
                 field.least,
-                field.most};
+                field.most,
+                detail::kTypeName<Element>,
+                Held::isOptional,
+                Held::isList,
+                {},
+                &value,
+                {},
+                {}};
+  if constexpr (NamedEnum<Element>) {
+    for (const auto& [choice, name] : enumWords(Element{})) option.choices.emplace_back(name);
+  }
+  option.words = [&value] {
+    std::vector<std::string> words;
+    if constexpr (Held::isList) {
+      for (const Element& one : value) words.push_back(detail::wordOf(one));
+    } else if constexpr (Held::isOptional) {
+      if (value) words.push_back(detail::wordOf(*value));
+    } else {
+      words.push_back(detail::wordOf(value));
+    }
+    return words;
+  };
+  option.setWords = [&value](const Option& self, const std::vector<std::string>& words) {
+    T all{};
+    for (const std::string& word : words) {
+      Element one{};
+      detail::read(self, word, one);
+      if constexpr (Held::isList) {
+        all.push_back(std::move(one));
+      } else {
+        all = std::move(one);
+      }
+    }
+    value = std::move(all);
+  };
+  return option;
 }
 
 /// Every option of a struct that has a `describe` function (Core/Describe.h), in its order, names

@@ -97,6 +97,9 @@ struct Record {
 /// @throws IOError  absent, not JSON, or not a record: names the file and the first fault
 [[nodiscard]] Json readRecord(const std::filesystem::path& path);
 
+/// The outputs whose hash a record tells, those that vary between equal runs last.
+[[nodiscard]] std::vector<Json> hashedOutputs(const Json& record);
+
 /// True for a relative path without ".." and control characters: it stays below where it starts.
 [[nodiscard]] bool staysBelow(const std::filesystem::path& name);
 

@@ -1,28 +1,20 @@
 // SPDX-FileCopyrightText: The Explica developers
 // SPDX-License-Identifier: Apache-2.0
-#include "Explica/Pipeline/FlatStack.h"
-
+// Volumes on the grid of a flat map, depth by depth.
 #include "Explica/Core/EigenViews.h"
-#include "Explica/Core/Folders.h"
 #include "Explica/IO/VolumeSeries.h"
-#include "Explica/Provenance/Json.h"
-#include "Explica/Provenance/Record.h"
+#include "ReportParts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <vector>
 
 namespace explica::pipeline {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::array<std::uint8_t, 3> kOffTheMap = {206, 220, 236};  // no colour of the maps
-constexpr int kTileWidth = 300;                                      // pixels, about
-constexpr int kMostTiles = 12;  // if there are more depths, so many evenly among them
-// As `explica flatten` names them.
-constexpr std::string_view kPrefix = "flat_", kEnding = ".nii.gz";
 
 /// A volume of the grid: mean over its frames where it has several.
 struct Values {
@@ -30,7 +22,7 @@ struct Values {
   int frames = 1;
 };
 
-Values readValues(const fs::path& file) {
+Values readValues(const std::filesystem::path& file) {
   io::VolumeSeries series(file);
   Values values{Volume<float>(series.grid()), series.frames()};
   std::vector<double> sum(values.mean.size(), 0);
@@ -42,15 +34,6 @@ Values readValues(const fs::path& file) {
     values.mean[v] = static_cast<float>(sum[v] / values.frames);
   }
   return values;
-}
-
-/// Whether the command was told that its volumes are of labels.
-bool holdsLabels(const fs::path& folder) {
-  const fs::path record = folder / provenance::kRecordName;
-  if (!isThere(record)) return false;
-  return provenance::readRecord(record)
-      .value("options", provenance::Json::object())
-      .value("nearest", false);
 }
 
 report::Picture depthPicture(const Volume<float>& stack, int k, int zoom,
@@ -75,36 +58,46 @@ report::ColourScale greyScaleOf(const Volume<float>& stack, const std::string& n
   return report::scaleFor(asVector(known), name, "", report::ColourMap::Grey);
 }
 
-}  // namespace
-
-std::vector<fs::path> flatStackFiles(const fs::path& folder) {
-  return entriesOf(folder, [](const std::string& name) {
-    return name.starts_with(kPrefix) && name.ends_with(kEnding);
-  });
-}
-
-FlatStack drawFlatStack(const fs::path& file) {
+/// Depths on one scale; labels (`--nearest`) in colours of their own.
+/// @param name  of the volume
+void showStack(ResultFolder& results, const std::filesystem::path& file, const std::string& name,
+               bool holdsLabels) {
   const Values values = readValues(file);
   const Grid& grid = values.mean.grid;
-  FlatStack stack;
-  stack.name = file.filename().string();
-  if (stack.name.starts_with(kPrefix)) stack.name.erase(0, kPrefix.size());
-  if (stack.name.ends_with(kEnding)) stack.name.resize(stack.name.size() - kEnding.size());
-  stack.cell = grid.spacing[0];
-  stack.frames = values.frames;
-  if (!holdsLabels(file.parent_path())) stack.scale = greyScaleOf(values.mean, stack.name);
+  report::ReportViews views;
+  views.title = name + ", layer by layer";
+  views.caption =
+      "The grid's depths from white to pial, cells of " + readable(grid.spacing[0]) + " mm" +
+      (values.frames > 1 ? "; mean of " + std::to_string(values.frames) + " frames" : "") +
+      ". Pale blue: off the map, or not known.";
+  if (!holdsLabels) views.scale = greyScaleOf(values.mean, name);
   const auto colourOf = [&](float value) {
-    return stack.scale ? (*stack.scale)(value)
+    return views.scale ? (*views.scale)(value)
                        : report::colourOfLabel(static_cast<Label>(std::lround(value)));
   };
-  stack.pixelsPerCell = std::max(1, (kTileWidth + grid.size[0] / 2) / std::max(1, grid.size[0]));
-  const int depths = grid.size[2], shown = std::min(depths, kMostTiles);
+  const int zoom =
+      std::max(1, (300 + grid.size[0] / 2) / std::max(1, grid.size[0]));  // pixels a tile
+  const int depths = grid.size[2], shown = std::min(depths, 12);
   for (int n = 0; n < shown; ++n) {
     const int k = shown < 2 ? 0 : n * (depths - 1) / (shown - 1);
-    stack.tiles.push_back({depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1),
-                           depthPicture(values.mean, k, stack.pixelsPerCell, colourOf)});
+    const double depth = depths < 2 ? 0.5 : static_cast<double>(k) / (depths - 1);
+    views.views.push_back(
+        {"depth " + readable(depth), depthPicture(values.mean, k, zoom, colourOf)});
   }
-  return stack;
+  results.content().views.push_back(std::move(views));
+}
+
+}  // namespace
+
+void showFlatStacks(ResultFolder& results, const StepFolder& step) {
+  constexpr std::string_view kPrefix = "flat_", kEnding = ".nii.gz";  // as flatten names them
+  const bool holdsLabels = step.record.value("options", Json::object()).value("nearest", false);
+  for (const std::filesystem::path& file : filesOf(step, kEnding)) {
+    std::string name = file.filename().string();
+    if (!name.starts_with(kPrefix)) continue;
+    name = name.substr(kPrefix.size(), name.size() - kPrefix.size() - kEnding.size());
+    results.attempt(file.filename().string(), [&] { showStack(results, file, name, holdsLabels); });
+  }
 }
 
 }  // namespace explica::pipeline
