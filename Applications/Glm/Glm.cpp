@@ -229,7 +229,7 @@ bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
   return complete;
 }
 
-/// @return  whether all is written: without the page, which takes seconds, after a stop
+/// @return  whether all is written: without the page, whose pictures take seconds, after a stop
 bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
               const Eigen::MatrixXd& fitted, const GlmResults& results) {
   auto step = context.step("write");

@@ -7,13 +7,35 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Maps/Folding.h"
 #include "Explica/Report/Page.h"
+#include "Explica/Report/SurfacePicture.h"
 #include "PlacePlot.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace explica::app {
 namespace {
+
+using report::Colour;
+
+constexpr Colour kNotTested = {0.55F, 0.55F, 0.55F};  // linear light: off the mask
+constexpr Colour kBelow = {0.78F, 0.78F, 0.78F};      // below the threshold
+constexpr int kMapsAtFullWidth = 3;  // of a page; more are drawn smaller, for as many pixels
+constexpr int kFullWidth = 420;      // of a view, pixels
+
+struct Size {
+  int width, height;
+};
+
+/// Of a view: all pictures of a page have as many pixels together, whatever the number of
+/// contrasts.
+Size sizeOfViews(const GlmResults& r) {
+  const double maps = 1 + 3 * static_cast<double>(r.contrasts.size());
+  const double share = std::sqrt(std::min(1.0, kMapsAtFullWidth / maps));
+  const int width = static_cast<int>(kFullWidth * share);
+  return {width, width * 3 / 4};
+}
 
 TriangleMesh meshOf(const Observations& o, const MapSide& h) {
   const Faces& all = o.surface->mesh.faces;
@@ -25,6 +47,52 @@ TriangleMesh meshOf(const Observations& o, const MapSide& h) {
   }
   return {o.surface->mesh.positions.middleRows(h.first, h.count),
           (all(mine, Eigen::all).array() - static_cast<std::int32_t>(h.first)).matrix()};
+}
+
+struct ShownSide {
+  const MapSide* hemisphere;
+  TriangleMesh mesh, inflated;
+};
+
+std::vector<ShownSide> sidesOf(const Observations& o) {
+  std::vector<ShownSide> sides;
+  if (!o.surface) return sides;
+  for (const MapSide& h : o.hemispheres) {
+    checkpoint();
+    TriangleMesh mesh = meshOf(o, h), inflated = maps::inflated(mesh);
+    sides.push_back({&h, std::move(mesh), std::move(inflated)});
+  }
+  return sides;
+}
+
+/// Lateral and medial pictures of each hemisphere.
+report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const Eigen::VectorXd& values,
+                            const report::ColourScale& scale, double threshold, Size pixels) {
+  report::ReportViews views;
+  views.scale = scale;
+  report::SurfacePictureOptions size{.width = pixels.width, .height = pixels.height};
+  for (const ShownSide& side : sides) {
+    std::vector<Colour> colours;
+    for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {
+      const double value = values[side.hemisphere->first + v];
+      colours.push_back(std::isnan(value)             ? kNotTested
+                        : std::abs(value) < threshold ? kBelow
+                                                      : scale(value));
+    }
+    const report::SurfaceScene scene(side.inflated);
+    const bool right = side.hemisphere->structure == "CortexRight";
+    const std::string name = right                                        ? "right"
+                             : side.hemisphere->structure == "CortexLeft" ? "left"
+                                                                          : "";
+    for (const bool lateral : {true, false}) {
+      const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
+      views.views.push_back(
+          {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
+           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height),
+                        colours, report::Filling::Smooth, size)});
+    }
+  }
+  return views;
 }
 
 report::ColourScale symmetric(const Eigen::VectorXd& values, const std::string& title) {
@@ -42,17 +110,47 @@ Eigen::VectorXd meanOf(const GlmResults& r) {
   return (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
 }
 
+void addViews(const std::vector<ShownSide>& sides, const GlmResults& r,
+              report::ReportContent& page) {
+  if (sides.empty()) return;
+  const Size size = sizeOfViews(r);
+  const Eigen::VectorXd mean = meanOf(r);
+  auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0, size);
+  views.id = "mean";
+  views.title = "Mean of all people";
+  views.caption = "Fitted at the people's mean covariates. Dark grey: not analysed.";
+  page.views.push_back(std::move(views));
+  for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
+    const auto& maps = r.maps.contrasts[k];
+    const std::string& name = r.contrasts[k].name;
+    const bool t = r.contrasts[k].isT();
+    const auto add = [&](const std::string& what, const Eigen::VectorXd& values, double threshold,
+                         const std::string& caption) {
+      auto shown = viewsOf(sides, values, symmetric(values, what), threshold, size);
+      shown.id = fileName(name) + "-" + std::to_string(page.views.size());
+      shown.title = name + ": " + what;
+      shown.caption = caption;
+      page.views.push_back(std::move(shown));
+    };
+    add(t ? "effect" : "partial R\u00b2", maps.effect, 0, "Not thresholded.");
+    add(t ? "t" : "F", maps.statistic, 0, "Not thresholded.");
+    add(t ? "t" : "F", maps.statistic, r.inferences[k].threshold,
+        "Where |" + std::string(t ? "t" : "F") + "| is at least " +
+            numberText(r.inferences[k].threshold, 3) +
+            ", the threshold that forms clusters; this alone makes nothing significant.");
+  }
+}
+
 /// The hemispheres that turn, inflated or as they are, with the maps of all contrasts.
-void addMaps(const Observations& o, const GlmResults& r, report::ReportContent& page) {
-  for (const MapSide& side : o.hemispheres) {
-    checkpoint();
-    const TriangleMesh mesh = meshOf(o, side);
-    report::Evolution view = report::evolutionOf({mesh});
-    view.shapes = {{"inflated", maps::inflated(mesh).positions}, {"as it is", {}}};
-    view.title = side.structure;
+void addMaps(const std::vector<ShownSide>& sides, const GlmResults& r,
+             report::ReportContent& page) {
+  for (const ShownSide& side : sides) {
+    report::Evolution view = report::evolutionOf({side.mesh});
+    view.shapes = {{"inflated", side.inflated.positions}, {"as it is", {}}};
+    view.title = side.hemisphere->structure;
     view.scene = "Cortex";
     const auto add = [&](const Eigen::VectorXd& values, const report::ColourScale& scale) {
-      view.maps.push_back({values.segment(side.first, side.count), scale});
+      view.maps.push_back({values.segment(side.hemisphere->first, side.hemisphere->count), scale});
     };
     const Eigen::VectorXd mean = meanOf(r);
     add(mean, report::scaleFor(mean, "mean", ""));
@@ -189,7 +287,9 @@ std::string resultPage(const GlmSettings& settings, const Observations& o, const
   page.title = "Group statistics: " + settings.model;
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
-  if (o.surface) addMaps(o, r, page);
+  const std::vector<ShownSide> sides = sidesOf(o);
+  addMaps(sides, r, page);
+  addViews(sides, r, page);
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     page.tables.push_back(o.surface ? clustersOf(o, r, k) : regionsOf(o, r, k));
   }

@@ -123,7 +123,7 @@ TEST(Glm, StoppedInItsPermutationsHasTheModels) {
   EXPECT_GE(without, 5);
 }
 
-/// The page is made again by a run that is not stopped; the maps are worth something.
+/// The page's pictures are drawn again by a run that is not stopped; the maps are worth something.
 TEST(Glm, StoppedInItsPageHasTheMaps) {
   TemporaryFolder folder;
   writePeoplesMaps(folder);
