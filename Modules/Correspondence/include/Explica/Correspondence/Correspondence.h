@@ -32,7 +32,7 @@ struct CorrespondenceOptions {
                ///< are interpolated, others followed; 0 gives the Lagrangian result, infinity
                ///< follows none beyond a grid face; unset: sqrt(2) times the longest diagonal of a
                ///< grid face, of `Hybrid` in tissue a few voxels thick 0
-  TraceOptions trace;
+  TraceOptions trace = {.maxStep = kInfinity};
 };
 
 template <class Visitor>
