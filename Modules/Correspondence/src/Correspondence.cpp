@@ -210,15 +210,14 @@ class Sweep {
     Tracer::Walk walk = tracer_.begin(tracer_.placeOf[r], uphill_);
     bool done = uphill_ * (walk.u - target_) >= 0;
     for (int k = 0; !done && !walk.stuck && k < kMaxSteps; ++k) {
-      const Vector before = walk.x;
-      const double lengthBefore = walk.length;
+      const Tracer::Walk before = walk;
       done = tracer_.advance(walk, target_, uphill_);
       if (done || walk.stuck) break;
       const auto interpolate = [&](int axis, const Vector& x, double length) {
         const std::optional<Face> face = faces_.at(axis, x);
         return face && fromFace(r, *face, length, disagreed);
       };
-      if (faces_.between(before, walk.x, lengthBefore, walk.length, interpolate)) return disagreed;
+      if (faces_.between(before, walk, interpolate)) return disagreed;
     }
     if (done) store(r, walk);
     return true;
@@ -328,31 +327,21 @@ std::vector<std::int32_t> orderByValue(const Tracer& tracer, const std::vector<d
   return order;
 }
 
-/// Share of tissue voxels beside a boundary from which on all trajectories are followed: tissue is
-/// then so thin that looking for faces to stop at costs more than the rest of the way.
-constexpr double kThin = 0.4;
-
-bool isThin(const Annulus& annulus) {
-  const auto& end = annulus.runEnd;
-  const double beside = end[1] - end[0] + (end[3] - end[2]);
-  return beside > kThin * static_cast<double>(annulus.count());
-}
-
 }  // namespace
 
 Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& interpolant,
                                    const CorrespondenceOptions& options, const Monitor& monitor) {
   if (options.lambda && !(*options.lambda >= 0))
     throw InvalidInput("lambda must be 0 or more millimetres");
-  const TrajectoryTracer tracer(annulus, interpolant, options.trace);
+  const bool isDialled = options.method == Method::Hybrid || options.method == Method::AppendixA;
+  const bool followAll =
+      options.method == Method::Lagrangian || (isDialled && options.lambda == 0.0);
+  TraceOptions trace = options.trace;
+  if (!followAll) trace.maxStep = std::min(trace.maxStep, 1.0);  // from one grid face to the next
+  const TrajectoryTracer tracer(annulus, interpolant, trace);
   const Tracer& field = tracer.field();
   Sweep inner(field, options, true);
   Sweep outer(field, options, false);
-  const bool hybrid = options.method == Method::Hybrid;
-  const bool dialled = hybrid || options.method == Method::AppendixA;
-  const bool followAll = options.method == Method::Lagrangian ||
-                         (dialled && options.lambda == 0.0) ||
-                         (hybrid && !options.lambda && isThin(annulus));
   if (followAll) {
     inner.traceAll(monitor);
     monitor.progress(0.5, "correspondences");
