@@ -24,7 +24,6 @@ TrajectoryTracer::Field::Field(const harmonic::Annulus& a, const harmonic::Inter
   const Vector& h = annulus.grid.spacing;
   finest = flat ? std::min(h[0], h[1]) : h.minCoeff();
   inverseSpacing = h.cwiseInverse();
-  options.maxStep = std::min(options.maxStep, 1.0);
   std::vector<std::uint8_t> cut(annulus.count(), 0);
   const auto strides = annulus.strides();
   parallelFor(annulus.count(), 1 << 14, [&](std::size_t n) {

@@ -53,14 +53,6 @@ struct TrajectoryTracer::Field {
   /// One accepted step towards the target; true when it was reached (the walk then ends on it).
   bool advance(Walk& walk, double target, int uphill) const;
 
-  /// From the centres of at most kBeside tissue voxels to the first grid plane, by a step of third
-  /// order: the way in voxels, 1 or -1 along the plane's axis, and its length in mm; NaN if it
-  /// leaves the tissue, or more than one side or a greater error than the tolerance is in the way.
-  void toPlane(const std::int32_t* ranks, Corner* steps, int count, int uphill) const;
-
-  /// Cell that the trajectory through a tissue voxel's centre enters: its lowest corner in the box.
-  [[nodiscard]] std::int32_t cellAhead(std::int32_t rank, int uphill) const;
-
   [[nodiscard]] Trace run(Walk walk, double target, int uphill) const;
 
   /// Where a walk from any point begins.
@@ -74,12 +66,9 @@ struct TrajectoryTracer::Field {
 
   /// Follows trajectories to the target, a few beside each other; each goes as it would alone.
   /// @param next    next(walk) begins a walk and gives the rank of its voxel; -1 after the last one
-  /// @param passed  passed(rank, from, lengthFrom, walk) is asked after each step but the last,
-  ///                which began at `from`: whether that is far enough
-  /// @param ended   ended(rank, walk, done) takes all others, in no particular order
-  template <class Next, class Passed, class Ended>
-  void followEach(double target, int uphill, const Next& next, const Passed& passed,
-                  const Ended& ended) const;
+  /// @param ended   ended(rank, walk, done) takes each, in no particular order
+  template <class Next, class Ended>
+  void followEach(double target, int uphill, const Next& next, const Ended& ended) const;
 
   /// Tissue voxel to start from for any point: in its cell, else the nearest within two voxels.
   [[nodiscard]] std::int32_t homeOf(const Vector& x) const;
@@ -146,9 +135,9 @@ struct TrajectoryTracer::Field {
   FieldView view_;
 };
 
-template <class Next, class Passed, class Ended>
+template <class Next, class Ended>
 void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& next,
-                                         const Passed& passed, const Ended& ended) const {
+                                         const Ended& ended) const {
   std::array<Walk, kBeside> walks;
   StepLanes tries;
   std::array<std::int32_t, kBeside> rank{}, steps{};
@@ -168,12 +157,9 @@ void TrajectoryTracer::Field::followEach(double target, int uphill, const Next& 
   /// Whether the walk goes on.
   const auto goesOn = [&](int w) {
     Walk& walk = walks[w];
-    const Vector from = walk.x;
-    const double lengthFrom = walk.length;
     const Outcome outcome = conclude(walk, tries, w, target, uphill);
     if (outcome == Outcome::Again) return true;
     const bool done = outcome == Outcome::Arrived || (walk.stuck && hop(walk, target, uphill));
-    if (!done && !walk.stuck && passed(rank[w], from, lengthFrom, walk)) return false;
     if (done || walk.stuck || ++steps[w] >= kMaxSteps) {
       ended(rank[w], walk, done);
       return false;

@@ -4,6 +4,7 @@
 
 #include "Explica/Harmonic/Annulus.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -43,12 +44,19 @@ class GridFaces {
   }
   [[nodiscard]] int corners() const { return annulus_.planar ? 2 : 4; }
 
-  /// Calls at(axis, x, length) for the grid planes between two points at most a voxel apart, in the
-  /// order in which they are met, until it returns true: whether it did.
-  template <class At>
-  bool between(const Vector& from, const Vector& to, double lengthFrom, double lengthTo,
-               const At& at) const {
-    const Vector step = to - from;
+  /// Calls at(axis, x, length) for the grid planes that a walk crossed by its last step, of a voxel
+  /// at most, in the order in which they are met, until it returns true: whether it did.
+  template <class Walk, class At>
+  bool between(const Walk& before, const Walk& after, const At& at) const {
+    const Vector &from = before.x, step = after.x - from;
+    const double length = after.length - before.length;
+    // The step's cubic, which leaves and arrives with the walk's velocities.
+    const Vector bend = length * (before.velocity + after.velocity) - 2 * step;
+    const Vector start = length * before.velocity;
+    const auto along = [&](double t) {
+      return Vector(t * (start + t * (step - start - bend + t * bend)));
+    };
+    constexpr int kRounds = 2;  // of Newton's method, from where the chord crosses
     struct Pierced {
       double t;
       int axis;
@@ -61,17 +69,22 @@ class GridFaces {
       // The next plane strictly ahead.
       const int below = static_cast<int>(from[a]);
       const int ahead = step[a] > 0 ? below + 1 : below - (from[a] == below ? 1 : 0);
-      const double t = (ahead - from[a]) / step[a];
+      double t = (ahead - from[a]) / step[a];
       if (t > 1) continue;
+      for (int k = 0; k < kRounds; ++k) {
+        const double slope = start[a] + t * (2 * (step - start - bend)[a] + t * 3 * bend[a]);
+        if (slope == 0) break;
+        t = std::clamp(t - (from[a] + along(t)[a] - ahead) / slope, 0.0, 1.0);
+      }
       int n = count++;
       for (; n > 0 && pierced[n - 1].t > t; --n) pierced[n] = pierced[n - 1];
       pierced[n] = {t, a, ahead};
     }
     for (int k = 0; k < count; ++k) {
       const double t = pierced[k].t;
-      Vector x = from + t * step;
+      Vector x = from + along(t);
       x[pierced[k].axis] = pierced[k].plane;
-      if (at(pierced[k].axis, x, lengthFrom + t * (lengthTo - lengthFrom))) return true;
+      if (at(pierced[k].axis, x, before.length + t * length)) return true;
     }
     return false;
   }

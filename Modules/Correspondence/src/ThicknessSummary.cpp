@@ -22,20 +22,16 @@ std::optional<double> thicknessAt(const Annulus& annulus, const Correspondence& 
                                   const Point& point) {
   constexpr double kEnough = 0.25;  // of the weight
   const Vector index = annulus.grid.toIndex(point);
-  const auto strides = annulus.strides();
   double sum = 0, weights = 0;
   for (int c = 0; c < 8; ++c) {
     double weight = 1;
-    std::ptrdiff_t place = 0;
-    bool within = true;
+    std::array<int, 3> corner;
     for (int a = 0; a < 3; ++a) {
       const double low = std::floor(index[a]), upper = index[a] - low;
-      const int at = static_cast<int>(low) + (c >> a & 1) - annulus.first[a];
-      within = within && at >= 0 && at < annulus.size[a];
+      corner[a] = static_cast<int>(low) + (c >> a & 1);
       weight *= (c >> a & 1) ? upper : 1 - upper;
-      place += static_cast<std::ptrdiff_t>(at) * strides[a];
     }
-    const std::int32_t n = within ? annulus.numberAt[place] : -1;
+    const std::int32_t n = annulus.numberOf(corner);
     if (n < 0 || std::isnan(correspondence.thickness(n))) continue;
     sum += weight * correspondence.thickness(n);
     weights += weight;

@@ -16,6 +16,8 @@ namespace {
 constexpr double kTinyStep = 1e-6;
 // A step ends beyond the boundary by about this share of its length plus this many voxels.
 constexpr double kPastTarget = 1.1, kBeyondTarget = 0.02;
+// A step longer than a voxel takes at most this share of the way that is left.
+constexpr double kFarShare = 0.5;
 // A step whose gain in u is below this share of |grad u| ds is inconsistent; the boundary is near
 // within this many voxels; and a walk may have so many such steps.
 constexpr double kEnough = 1e-5;  // voxels from the boundary at which a walk has arrived
@@ -84,39 +86,6 @@ TrajectoryTracer::Field::Walk TrajectoryTracer::Field::begin(std::int32_t place,
   return walk;
 }
 
-std::int32_t TrajectoryTracer::Field::cellAhead(std::int32_t rank, int uphill) const {
-  const auto strides = annulus.strides();
-  std::int32_t cell = placeOf[rank];
-  for (int a = 0; a < (flat ? 2 : 3); ++a) {
-    cell -= static_cast<float>(uphill) * node[rank][a] < 0 ? strides[a] : 0;
-  }
-  return cell;
-}
-
-void TrajectoryTracer::Field::toPlane(const std::int32_t* ranks, Corner* steps, int count,
-                                      int uphill) const {
-  const std::int32_t row = annulus.size[0], rows = annulus.size[1];
-  PlaneLanes lanes;
-  lanes.count = count;
-  lanes.uphill = uphill;
-  lanes.longest = 2 * options.maxStep * finest;
-  lanes.tolerance = options.tolerance;
-  for (int w = 0; w < kBeside; ++w) {
-    const std::int32_t rank = ranks[std::min(w, count - 1)];
-    const std::int32_t place = placeOf[rank], line = place / row, slice = line / rows;
-    lanes.start[0][w] = place - line * row;
-    lanes.start[1][w] = line - slice * rows;
-    lanes.start[2][w] = slice;
-    for (int c = 0; c < 4; ++c) lanes.node[w][c] = node[rank][c];
-    lanes.made[w] = cellAt_[cellAhead(rank, uphill)] > kDivided;
-  }
-  stepToPlane(view_, lanes);
-  for (int w = 0; w < count; ++w) {
-    const Vector way = vectorOf(lanes.way, w);
-    steps[w] << way.cast<float>(), static_cast<float>(lanes.made[w] ? lanes.length[w] : kNaN);
-  }
-}
-
 bool TrajectoryTracer::Field::goStraight(Walk& walk, double target, int uphill) const {
   const double rest = uphill * (target - walk.u) / walk.slope;
   walk.stuck = !(rest < kNearEnd * finest);
@@ -129,14 +98,12 @@ bool TrajectoryTracer::Field::goStraight(Walk& walk, double target, int uphill) 
 
 double TrajectoryTracer::Field::stepAfter(double step, double error) const {
   constexpr double kSafety = 0.9, kLeast = 0.3, kMost = 4.0;
-  const double longest = options.maxStep * finest, growth = longest / step;
+  const double growth = std::min(kMost, options.maxStep * finest / step);
   // The cubic root only where the longest step is not within reach.
-  if (growth <= kMost &&
-      error * growth * growth * growth <= kSafety * kSafety * kSafety * options.tolerance) {
-    return longest;
+  if (error * growth * growth * growth <= kSafety * kSafety * kSafety * options.tolerance) {
+    return growth * step;
   }
-  const double factor = error > 0 ? kSafety * std::cbrt(options.tolerance / error) : kMost;
-  return std::min(longest, step * std::clamp(factor, kLeast, kMost));
+  return step * std::clamp(kSafety * std::cbrt(options.tolerance / error), kLeast, growth);
 }
 
 bool TrajectoryTracer::Field::hop(Walk& walk, double target, int uphill) const {
@@ -186,10 +153,11 @@ bool TrajectoryTracer::Field::hop(Walk& walk, double target, int uphill) const {
 
 void TrajectoryTracer::Field::limitStep(Walk& walk, double target, int uphill) const {
   // Half a voxel at most where the side must be known: a step then never leaves its neighbourhood.
-  const double longest = (walk.divided ? std::min(0.5, options.maxStep) : options.maxStep) * finest;
-  // Not far past the target either, where what is extended beyond the boundary bends.
   const double rest = uphill * (target - walk.u) / walk.slope;
-  walk.step = std::min({walk.step, longest, kPastTarget * rest + kBeyondTarget * finest});
+  const double longest = walk.divided ? 0.5 * finest : std::max(finest, kFarShare * rest);
+  // Not far past the target either, where what is extended beyond the boundary bends.
+  walk.step = std::min({walk.step, longest, options.maxStep * finest,
+                        kPastTarget * rest + kBeyondTarget * finest});
 }
 
 void TrajectoryTracer::Field::attempt(const Walk* walks, StepLanes& tries, int count,

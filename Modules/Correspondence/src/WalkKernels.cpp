@@ -18,8 +18,6 @@ using Single = hn::Rebind<float, Real>;
 using Corner = hn::CappedTag<float, 4>;  // or a part of one
 using RealVec = hn::Vec<Real>;
 
-constexpr double kBeyondPlane = 0.02;  // voxels, so that the plane lies within the step if it bends
-
 /// Samples beside each other: gradient per voxel and u at each lane's place.
 struct alignas(64) Found {
   float f[3][kBeside];           // place in the cell
@@ -237,83 +235,6 @@ void TryStep(const FieldView& view, StepLanes& lanes) {
   }
 }
 
-/// Where t s (k1 + t (mean - k1)), the parabola through a step's ends with its first velocity,
-/// first is a voxel away along an axis; 2 where that is not before its end.
-HWY_INLINE RealVec CrossingOf(RealVec step, const RealVec* k1, const RealVec* mean) {
-  const Real d;
-  const auto one = hn::Set(d, 1.0);
-  auto first = hn::Set(d, 2.0);
-  for (int a = 0; a < 3; ++a) {
-    const auto reach = hn::Mul(step, mean[a]), start = hn::Mul(step, k1[a]);
-    const auto side = hn::CopySign(one, reach);
-    const auto p = hn::Mul(side, start), q = hn::Mul(side, hn::Sub(reach, start));
-    auto t = hn::Div(one, hn::Abs(reach));
-    for (int k = 0; k < 2; ++k) {
-      const auto value = hn::Sub(hn::Mul(t, hn::Add(p, hn::Mul(t, q))), one);
-      const auto slope = hn::Add(p, hn::Mul(hn::Add(t, t), q));
-      t = hn::Sub(t, hn::Div(value, slope));
-    }
-    const auto crosses =
-        hn::And(hn::Ge(hn::Abs(reach), one), hn::And(hn::Gt(t, hn::Zero(d)), hn::Le(t, one)));
-    first = hn::IfThenElse(hn::And(crosses, hn::Lt(t, first)), t, first);
-  }
-  return first;
-}
-
-void StepToPlane(const FieldView& view, PlaneLanes& lanes) {
-  static constexpr std::int32_t kNoHome[kBeside] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  const Real d;
-  const auto one = hn::Set(d, 1.0);
-  Found found;
-  Lanes at, k1, k2, k3;
-  Lane step, error;
-  const auto takeSamples = [&] {
-    Sample<false>(view, at, kNoHome, lanes.count, found);
-    for (int l = 0; l < lanes.count; ++l) {
-      lanes.made[l] &= found.home[l] != -1 && !found.divided[l];
-    }
-  };
-  Velocities(view, lanes.node[0].data(), lanes.uphill, k1, nullptr);
-  for (std::size_t l = 0; l < kBeside; l += hn::Lanes(d)) {
-    auto most = hn::Zero(d);
-    for (int a = 0; a < 3; ++a) most = hn::Max(most, hn::Abs(hn::Load(d, k1[a].data() + l)));
-    const auto length = hn::Div(hn::Set(d, 1 + kBeyondPlane), most);
-    // Where it is too long there is nothing to look for: stay.
-    const auto fits = hn::Le(length, hn::Set(d, lanes.longest));
-    hn::Store(hn::IfThenElseZero(fits, length), d, step.data() + l);
-  }
-  Advance(lanes.start, 0.5, step, k1, at);
-  takeSamples();
-  Velocities(view, found.value[0], lanes.uphill, k2, nullptr);
-  Advance(lanes.start, 0.75, step, k2, at);
-  takeSamples();
-  Velocities(view, found.value[0], lanes.uphill, k3, nullptr);
-  for (std::size_t l = 0; l < kBeside; l += hn::Lanes(d)) {
-    const auto s = hn::Load(d, step.data() + l);
-    RealVec first[3], mean[3];
-    auto squared = hn::Zero(d);
-    for (int a = 0; a < 3; ++a) {
-      const auto middle = hn::Load(d, k2[a].data() + l);
-      first[a] = hn::Load(d, k1[a].data() + l);
-      mean[a] = Mean(first[a], middle, hn::Load(d, k3[a].data() + l));
-      // The third-order step's difference from the midpoint rule's bounds the error.
-      const auto apart = hn::Mul(s, hn::Sub(mean[a], middle));
-      squared = hn::Add(squared, hn::Mul(apart, apart));
-    }
-    const auto t = CrossingOf(s, first, mean);
-    for (int a = 0; a < 3; ++a) {
-      const auto way =
-          hn::Mul(hn::Mul(t, s), hn::Add(first[a], hn::Mul(t, hn::Sub(mean[a], first[a]))));
-      const auto isAxis = hn::Ge(hn::Abs(way), hn::Set(d, 1 - 1e-6));
-      hn::Store(hn::IfThenElse(isAxis, hn::CopySign(one, way), way), d, lanes.way[a].data() + l);
-    }
-    hn::Store(hn::Mul(t, s), d, lanes.length.data() + l);
-    const auto crosses = hn::Le(t, one);
-    hn::Store(hn::IfThenElse(crosses, hn::Sqrt(squared), hn::Set(d, 1e9)), d, error.data() + l);
-  }
-  for (int l = 0; l < lanes.count; ++l) lanes.made[l] &= error[l] <= lanes.tolerance;
-}
-
 }  // namespace explica::correspondence::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -321,14 +242,9 @@ HWY_AFTER_NAMESPACE();
 namespace explica::correspondence {
 
 HWY_EXPORT(TryStep);
-HWY_EXPORT(StepToPlane);
 
 void tryStep(const FieldView& view, StepLanes& lanes) {
   HWY_DYNAMIC_DISPATCH(TryStep)(view, lanes);
-}
-
-void stepToPlane(const FieldView& view, PlaneLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(StepToPlane)(view, lanes);
 }
 
 }  // namespace explica::correspondence

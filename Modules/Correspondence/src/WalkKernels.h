@@ -61,23 +61,8 @@ struct StepLanes {
   std::array<bool, kBeside> lost{};             ///< a stage found no tissue
 };
 
-/// Ways from voxel centres to the first grid plane.
-struct PlaneLanes {
-  Lanes start;                         ///< centres
-  std::array<float, 4> node[kBeside];  ///< of the voxels
-  std::array<bool, kBeside> made;      ///< wanted; then, whether it was made within the tolerance
-  int count = 0;                       ///< lanes that are taken, the first ones
-  double uphill = 1;
-  double longest = 0;    ///< mm
-  double tolerance = 0;  ///< voxels
-
-  Lanes way;    ///< from the centre, voxels: 1 or -1 along the plane's axis
-  Lane length;  ///< mm
-};
-
 /// Of each lane that is taken, what the step does; no lane's result depends on another's.  The same
 /// numbers on every processor.
 void tryStep(const FieldView& view, StepLanes& lanes);
-void stepToPlane(const FieldView& view, PlaneLanes& lanes);
 
 }  // namespace explica::correspondence

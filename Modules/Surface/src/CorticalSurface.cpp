@@ -9,6 +9,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Geometry/FaceTree.h"
 #include "Explica/Geometry/IsoSurface.h"
@@ -31,7 +32,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -42,20 +42,6 @@
 namespace explica::surface {
 namespace {
 
-/// Time since the last look, s.
-class Stopwatch {
- public:
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// Longest edge that is left, in mean ones: 4 mm where these are 1.29 mm.
 constexpr double kLongestEdge = 3.1;
 /// Farthest that smoothing may take a vertex across its surface in one sweep, voxels.
@@ -65,19 +51,6 @@ constexpr int kGrowthSteps = 6;
 /// Sweeps of each relaxation of the outer surface, which then grows again: a relaxation shrinks
 /// crowns and opens closed sulci where it slides vertices far.
 constexpr std::array kRelaxations = {16, 4, 4};
-
-/// Whether the voxel around a point is tissue.
-bool isTissue(const harmonic::Annulus& annulus, const Point& point) {
-  const Vector index = annulus.grid.toIndex(point);
-  const auto strides = annulus.strides();
-  std::ptrdiff_t place = 0;
-  for (int a = 0; a < 3; ++a) {
-    const auto at = static_cast<int>(std::lround(index[a])) - annulus.first[a];
-    if (at < 0 || at >= annulus.size[a]) return false;
-    place += static_cast<std::ptrdiff_t>(at) * strides[a];
-  }
-  return annulus.numberAt[place] >= 0;
-}
 
 /// From a point towards the zero of a level set along its gradient, as far as `most`, mm; nowhere
 /// if the level does not fall outward.
@@ -242,11 +215,10 @@ void growSurfaces(const GrowingColumns& ribbon, const RibbonPaths& along, Cortic
 
   // Coarse triangles slide out of folds of the ribbon: what does goes back to its trajectory.
   const auto inRibbon = [&](std::int32_t v, const Point& point, const Vector&) {
-    const harmonic::Annulus& annulus = along.tracer().annulus();
     const Point middle = ribbon.paths[v].at(0.5 * ribbon.paths[v].length());
     for (const double back : {0.0, 0.5}) {
       const Point place = point + back * (middle - point);
-      if (isTissue(annulus, place)) return place;
+      if (along.isTissue(place)) return place;
     }
     return middle;
   };
@@ -373,18 +345,25 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   takePaths(result.white.mesh, trajectories, ribbon);
   result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
-  growSurfaces(ribbon, trajectories, result, monitor.part(0.7, 0.96));
   // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
   // better than a mesh.
-  std::optional<correspondence::Ribbon> between;
   constexpr double kFineEdge = 1.5;  // voxels
   const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  if (placed && isFine && hasLongVoxels(ribbon.tissue.insulated.grid)) {
+  const bool fromSurfaces = placed && isFine && hasLongVoxels(ribbon.tissue.insulated.grid);
+  std::optional<RibbonVoxels> ofLevels;
+  const std::array<std::function<void()>, 2> tasks = {
+      [&] { growSurfaces(ribbon, trajectories, result, monitor.part(0.7, 0.96)); },
+      [&] {
+        if (!fromSurfaces) ofLevels.emplace(first);
+      }};
+  parallelTasks(tasks.size(), [&](std::size_t n) { tasks[n](); });
+  std::optional<correspondence::Ribbon> between;
+  if (fromSurfaces) {
     between = solve(
         annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
         silent(monitor));
   }
-  const RibbonVoxels voxels(between ? *between : first);
+  const RibbonVoxels voxels = between ? RibbonVoxels(*between) : std::move(*ofLevels);
   takeThickness(ribbon, voxels, result);
   result.columns = columnsOf(voxels.annulus, voxels.found);
   result.seconds.growing = watch.lap();

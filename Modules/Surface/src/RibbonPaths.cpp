@@ -6,6 +6,7 @@
 #include "Explica/Core/Parallel.h"
 #include "Explica/Surface/LevelSet.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,8 +15,8 @@ namespace explica::surface {
 RibbonPaths::RibbonPaths(const correspondence::Ribbon& ribbon)
     : annulus_(ribbon.annulus),
       tracer_(ribbon.annulus, ribbon.interpolant),
-      isSulcal_(ribbon.annulus.numberAt.size(), 0) {
-  for (const std::int32_t n : ribbon.sulcalVoxels) isSulcal_[annulus_.place[n]] = 1;
+      isSulcal_(ribbon.annulus.count(), 0) {
+  for (const std::int32_t n : ribbon.sulcalVoxels) isSulcal_[n] = 1;
 }
 
 double middleGap(const Grid& grid) {
@@ -46,18 +47,20 @@ Trajectory RibbonPaths::outwardFrom(const Point& start, const Vector& normal) co
   return path;
 }
 
+bool RibbonPaths::isTissue(const Point& point) const {
+  const Vector index = annulus_.grid.toIndex(point);
+  std::array<int, 3> voxel;
+  for (int a = 0; a < 3; ++a) voxel[a] = static_cast<int>(std::lround(index[a]));
+  return annulus_.numberOf(voxel) >= 0;
+}
+
 bool RibbonPaths::isBank(const Point& point) const {
   const Vector index = annulus_.grid.toIndex(point);
-  const auto strides = annulus_.strides();
   for (int c = 0; c < 8; ++c) {
-    std::ptrdiff_t place = 0;
-    bool within = true;
-    for (int a = 0; a < 3; ++a) {
-      const int at = static_cast<int>(std::floor(index[a])) + (c >> a & 1) - annulus_.first[a];
-      within = within && at >= 0 && at < annulus_.size[a];
-      place += static_cast<std::ptrdiff_t>(at) * strides[a];
-    }
-    if (within && isSulcal_[place]) return true;
+    std::array<int, 3> corner;
+    for (int a = 0; a < 3; ++a) corner[a] = static_cast<int>(std::floor(index[a])) + (c >> a & 1);
+    const std::int32_t n = annulus_.numberOf(corner);
+    if (n >= 0 && isSulcal_[n]) return true;
   }
   return false;
 }

@@ -44,13 +44,16 @@ class RibbonPaths {
   /// To the outer boundary from a point of the inner one with outward normal `normal`.
   [[nodiscard]] Trajectory outwardFrom(const Point& start, const Vector& normal) const;
 
+  /// Whether the voxel around a point is tissue.
+  [[nodiscard]] bool isTissue(const Point& point) const;
+
   /// True if the middle of a buried sulcus passes beside a corner of the point's cell.
   [[nodiscard]] bool isBank(const Point& point) const;
 
  private:
   const harmonic::Annulus& annulus_;
   correspondence::TrajectoryTracer tracer_;
-  std::vector<std::uint8_t> isSulcal_;  ///< per box voxel
+  std::vector<std::uint8_t> isSulcal_;  ///< per tissue voxel
 };
 
 /// Ends a trajectory at an arc length.

@@ -7,6 +7,7 @@
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/StopScope.h"
+#include "Explica/Core/Stopwatch.h"
 #include "Explica/Correspondence/Correspondence.h"
 #include "Explica/Correspondence/ImageEdge.h"
 #include "Explica/Correspondence/Ribbon.h"
@@ -28,7 +29,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -49,11 +49,6 @@ constexpr double kSmallPatch = 1, kSmallPiece = 2, kSmallHole = 0.75;
 constexpr double kPocket = 0.02;
 /// In which a sheet grows from the middle to either side.
 constexpr int kSheetSteps = 3;
-
-double secondsSince(std::chrono::steady_clock::time_point& last) {
-  const auto now = std::chrono::steady_clock::now();
-  return std::chrono::duration<double>(now - std::exchange(last, now)).count();
-}
 
 /// Pieces of one role that only tissue surrounds become tissue: vessels, specks, lost voxels.
 std::int64_t fillPockets(Volume<Site>& roles) {
@@ -408,21 +403,21 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   CorticalSurfaces made;
   SheetFacts& facts = made.sheet;
   facts.open = true;
-  auto last = std::chrono::steady_clock::now();
+  Stopwatch watch;
   monitor.progress(0, "pockets in the tissue");
   Volume<Site> sites = sitesOf(masks);
   facts.pocketsFilled = fillPockets(sites);
-  made.seconds.topology = secondsSince(last);
+  made.seconds.topology = watch.lap();
   monitor.progress(0.05, "harmonic interpolant");
   const Ribbon field = solve(sites, monitor);
   made.cutLinks = static_cast<std::int64_t>(field.sulcalVoxels.size());
-  made.seconds.interpolant = secondsSince(last);
+  made.seconds.interpolant = watch.lap();
 
   monitor.progress(0.25, "extracting the sheet");
   SheetLevel level = levelOf(field);
   const TriangleMesh raw = extractSheet(field, level, facts);
   carryOn(level);
-  made.seconds.extraction = secondsSince(last);
+  made.seconds.extraction = watch.lap();
   monitor.progress(0.3, "remeshing");
   RemeshOptions remeshing;
   remeshing.faces = options.faces;
@@ -432,7 +427,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   RemeshResult remeshed = remesh(raw, level.level, remeshing, warnings);
   const TriangleMesh sheet = std::move(remeshed.mesh);
   made.white.edgeLength = remeshed.edgeLength;
-  made.seconds.remeshing = secondsSince(last);
+  made.seconds.remeshing = watch.lap();
 
   monitor.progress(0.6, "trajectories");
   const RibbonPaths ribbon(field);
@@ -443,10 +438,10 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
     made.thickness[static_cast<Eigen::Index>(v)] =
         ways.inward[v].length() + ways.outward[v].length();
   }
-  made.seconds.trajectories = secondsSince(last);
+  made.seconds.trajectories = watch.lap();
   monitor.progress(0.7, "growing the surfaces");
   growSheets(sheet, ways, ribbon, made);
-  made.seconds.growing = secondsSince(last);
+  made.seconds.growing = watch.lap();
 
   monitor.progress(0.95, "curvature");
   made.curvature = maps::meanCurvature(made.white.mesh);
@@ -462,7 +457,7 @@ CorticalSurfaces buildSheets(const TissueMasks& masks, const SurfaceOptions& opt
   const Columns known = columnsOf(field.annulus, found, nearEdge);
   facts.thicknessKnown = meanThickness(known.area, known.thickness);
   made.noRibbon = (made.thickness.array() == 0).count();
-  made.seconds.measures = secondsSince(last);
+  made.seconds.measures = watch.lap();
   monitor.progress(1, "surfaces");
   return made;
 }

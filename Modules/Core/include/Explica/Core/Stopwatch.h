@@ -6,11 +6,17 @@
 
 namespace explica {
 
-/// Wall time since its construction, s.
+/// Wall time since its construction or the last lap, s.
 class Stopwatch {
  public:
   [[nodiscard]] double operator()() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  }
+
+  double lap() {
+    const double seconds = (*this)();
+    *this = {};
+    return seconds;
   }
 
  private:

@@ -26,13 +26,12 @@ constexpr auto enumWords(Method) {
 }
 
 struct CorrespondenceOptions {
-  Method method = Method::Hybrid;
-  std::optional<double>
-      lambda;  ///< mm; of `Hybrid` and `AppendixA`: neighbours' boundary points nearer than this
-               ///< are interpolated, others followed; 0 gives the Lagrangian result, infinity
-               ///< follows none beyond a grid face; unset: sqrt(2) times the longest diagonal of a
-               ///< grid face, of `Hybrid` in tissue a few voxels thick 0
-  TraceOptions trace;
+  Method method = Method::Lagrangian;
+  std::optional<double> lambda;  ///< mm; of `Hybrid` and `AppendixA`: neighbours' boundary points
+                                 ///< nearer than this are interpolated, others followed; 0 gives
+                                 ///< the Lagrangian result, infinity follows none beyond a grid
+                                 ///< face; unset: sqrt(2) times the longest diagonal of a grid face
+  TraceOptions trace = {.maxStep = kInfinity};
 };
 
 template <class Visitor>
@@ -42,7 +41,7 @@ void describe(CorrespondenceOptions& options, Visitor&& visit) {
       Field{"lambda", "mm",
             "hybrid, appendix-a: boundary points of neighbours nearer than this are "
             "interpolated, others followed; 0 follows all (default: 1.4 times the longest diagonal "
-            "of a grid face, 0 in tissue a few voxels thick)",
+            "of a grid face)",
             0},
       options.lambda);
 }
@@ -64,6 +63,10 @@ struct Correspondence {
 /// Correspondences across the tissue: phi0 and phi1 are constant along T = grad u / |grad u| with
 /// phi0 = x on the inner and phi1 = x on the outer boundary; grad L0 . T = 1.
 ///
+/// Lagrangian: every trajectory is followed to the boundary, eight at a time on each thread, by
+/// steps that grow to half of what is left of the way: their number grows as the logarithm of the
+/// tissue's thickness in voxels.
+///
 /// AppendixA: the thesis's appendix A to the letter. A voxel whose upwind neighbours' boundary
 /// points are all nearer to each other than lambda takes (3.1) of them, which is of first order;
 /// any other follows its trajectory to the first line (in space: face) between solved grid points
@@ -73,11 +76,11 @@ struct Correspondence {
 /// trajectories run in parallel: the error depends on lambda below that, and rises to the sweep's
 /// with better boundary values above it.
 ///
-/// Hybrid: never takes (3.1). Every trajectory is followed at least to the first grid face ahead,
-/// where the arrivals are interpolated with their second differences. So each voxel adds an error
-/// of third order where (3.1) adds one of second, and lambda only says which faces are passed by
-/// because trajectories part there: the error is near the Lagrangian's for every lambda, up to
-/// infinity, at a third of its time. It works in steps of u, on all threads.
+/// Hybrid: never takes (3.1). In the order of u, every trajectory is followed at least to the first
+/// grid face ahead whose corners were found before, where the arrivals are interpolated with their
+/// second differences. So each voxel adds an error of third order where (3.1) adds one of second,
+/// and lambda only says which faces are passed by because trajectories part there: the error is
+/// near the Lagrangian's for every lambda, up to infinity.
 ///
 /// No result depends on the number of threads.
 [[nodiscard]] Correspondence findCorrespondences(const harmonic::Annulus& annulus,

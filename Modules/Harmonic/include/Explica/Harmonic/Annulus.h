@@ -98,6 +98,15 @@ struct Annulus {
     const auto s = voxel(number);
     return grid.linear(s[0], s[1], s[2]);
   }
+  /// Number of the tissue voxel at a voxel of `grid`; negative where there is none.
+  [[nodiscard]] std::int32_t numberOf(const std::array<int, 3>& voxel) const {
+    std::array<int, 3> s;
+    for (int a = 0; a < 3; ++a) {
+      s[a] = voxel[a] - first[a];
+      if (s[a] < 0 || s[a] >= size[a]) return kInsulated;
+    }
+    return numberAt[s[0] + size[0] * (s[1] + size[1] * s[2])];
+  }
   /// Row of `fractions`, or -1 for a voxel with six uncut links.
   [[nodiscard]] std::int32_t irregular(std::int32_t number) const {
     if (number < runEnd[0]) return -1;
