@@ -156,8 +156,8 @@ void TrajectoryTracer::Field::limitStep(Walk& walk, double target, int uphill) c
   const double rest = uphill * (target - walk.u) / walk.slope;
   const double longest = walk.divided ? 0.5 * finest : std::max(finest, kFarShare * rest);
   // Not far past the target either, where what is extended beyond the boundary bends.
-  walk.step = std::min({walk.step, longest, options.maxStep * finest,
-                        kPastTarget * rest + kBeyondTarget * finest});
+  walk.step = std::min(
+      {walk.step, longest, options.maxStep * finest, kPastTarget * rest + kBeyondTarget * finest});
 }
 
 void TrajectoryTracer::Field::attempt(const Walk* walks, StepLanes& tries, int count,

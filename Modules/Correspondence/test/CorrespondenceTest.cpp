@@ -445,18 +445,57 @@ TEST(Trajectory, ReachesAnyLevelFromAnyPoint) {
   EXPECT_FALSE(tracer.trace(Point(200, 0, 0), 1).reached);
 }
 
-/// Two slabs of white matter 12 voxels apart, grey matter all between: each bank is half of it.
-Volume<Label> banksThatTouch() {
-  Volume<Label> labels(harmonic::centredGrid({24, 20, 40}, {1, 1, 0.9}), 0);
+/// Two slabs of white matter, grey matter all between: each bank is half of it.
+Volume<Label> banksThatTouch(int between = 11, const Vector& spacing = {1, 1, 0.9}) {
+  const int wide = between + 13;
+  Volume<Label> labels(harmonic::centredGrid({wide, 20, 40}, spacing), 0);
   for (int k = 0; k < 40; ++k) {
     for (int j = 0; j < 20; ++j) {
-      for (int i = 0; i < 24; ++i) {
-        const bool bank = i < 6 || i >= 17;  // 11 voxels between
+      for (int i = 0; i < wide; ++i) {
+        const bool bank = i < 6 || i >= 6 + between;
         labels(i, j, k) = k < 6 ? 1 : k < 34 ? (bank ? 1 : 2) : 0;
       }
     }
   }
   return labels;
+}
+
+// Banks of 13 voxels, with a sheet between them that no step may pass, along other axes of the grid
+// than the world's; and tissue whose trajectories bend.
+TEST(Correspondence, LongStepsComeToWhereThoseOfAVoxelDo) {
+  Volume<Label> labels = banksThatTouch(27, {0.6, 0.9, 0.7});
+  labels.grid.direction = Eigen::AngleAxisd(0.7, Vector(1, -2, 3).normalized()).toRotationMatrix() *
+                          Vector(1, -1, 1).asDiagonal();
+  Solved banks;
+  banks.annulus = recoverSulci(harmonic::annulusFromLabels(labels, {{1}, {2}, {}, {}})).annulus;
+  banks.interpolant = harmonic::solveInterpolant(banks.annulus);
+  for (const Solved& s : {banks, eccentric(), spheroids()}) {
+    const auto by = [&](const TraceOptions& trace) {
+      CorrespondenceOptions options;
+      options.trace = trace;
+      return findCorrespondences(s.annulus, s.interpolant, options);
+    };
+    const auto close = by({.tolerance = 1e-6, .maxStep = 0.25});
+    /// Mean way between boundary points, and the share of voxels where it is over a tenth of one.
+    const auto apart = [&](const TraceOptions& trace) -> Eigen::Array2d {
+      const auto found = by(trace);
+      double sum = 0, far = 0;
+      for (std::size_t n = 0; n < s.annulus.count(); ++n) {
+        const double off = (found.innerPoint[n] - close.innerPoint[n]).norm() +
+                           (found.outerPoint[n] - close.outerPoint[n]).norm();
+        EXPECT_FALSE(std::isnan(off));
+        sum += off;
+        far += off > 0.1 * s.annulus.grid.spacing.minCoeff();
+      }
+      return Eigen::Array2d(sum, far) / static_cast<double>(s.annulus.count());
+    };
+    const Eigen::Array2d voxel = apart({}), grown = apart(CorrespondenceOptions().trace);
+    std::printf("steps of a voxel: %.5f mm, %.5f far; longer: %.5f mm, %.5f far\n", voxel[0],
+                voxel[1], grown[0], grown[1]);
+    const double tolerance = TraceOptions().tolerance * s.annulus.grid.spacing.minCoeff();
+    EXPECT_LE(grown[0], voxel[0] + tolerance);
+    EXPECT_LE(grown[1], 1.1 * voxel[1]);
+  }
 }
 
 TEST(Correspondence, DoesNotDependOnTheInstructionSet) {

@@ -14,9 +14,9 @@ namespace explica::correspondence {
 /// How carefully trajectories are followed.
 struct TraceOptions {
   double tolerance = 4e-3;  ///< greatest error estimate of a step, in voxels
-  double maxStep = 1;       ///< longest step, in voxels of the finest spacing; beyond one it is half
-                            ///< of what is left at most, and half a voxel where two banks share a
-                            ///< cell, so that the bank stays known
+  double maxStep = 1;  ///< longest step, in voxels of the finest spacing; beyond one it is half
+                       ///< of what is left at most, and half a voxel where two banks share a
+                       ///< cell, so that the bank stays known
 };
 
 /// Where a trajectory came to.
