@@ -238,7 +238,7 @@ async function showScene({ sources: ofScene }, isStopped, onStop) {
     onStop(() => renderer.dispose());
     scene = await Promise.all(ofScene.map(partOf));
   } catch (fault) {
-    message.textContent = 'This browser cannot show the surface (' + fault.message + '); the pictures below show its views.';
+    message.textContent = 'This browser cannot show the surface (' + fault.message + '); explica figure draws it.';
     byId('controls').style.display = 'none';
     return;
   }
