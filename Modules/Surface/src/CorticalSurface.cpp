@@ -345,25 +345,18 @@ void growInRibbon(const CorticalTissue& tissue, std::optional<BorderImages> imag
   takePaths(result.white.mesh, trajectories, ribbon);
   result.seconds.trajectories = watch.lap();
   result.shortened = shortenAstray(result.white.mesh, voxelSize(tissue.white.grid), ribbon.paths);
+  growSurfaces(ribbon, trajectories, result, monitor.part(0.7, 0.96));
   // Levels on long voxels join banks that the surfaces part; on cubes they know crowns and floors
   // better than a mesh.
+  std::optional<correspondence::Ribbon> between;
   constexpr double kFineEdge = 1.5;  // voxels
   const bool isFine = result.white.edgeLength <= kFineEdge * voxelSize(tissue.white.grid);
-  const bool fromSurfaces = placed && isFine && hasLongVoxels(ribbon.tissue.insulated.grid);
-  std::optional<RibbonVoxels> ofLevels;
-  const std::array<std::function<void()>, 2> tasks = {
-      [&] { growSurfaces(ribbon, trajectories, result, monitor.part(0.7, 0.96)); },
-      [&] {
-        if (!fromSurfaces) ofLevels.emplace(first);
-      }};
-  parallelTasks(tasks.size(), [&](std::size_t n) { tasks[n](); });
-  std::optional<correspondence::Ribbon> between;
-  if (fromSurfaces) {
+  if (placed && isFine && hasLongVoxels(ribbon.tissue.insulated.grid)) {
     between = solve(
         annulusBetween(result.white.mesh, result.pial, ribbon.tissue.insulated, silent(monitor)),
         silent(monitor));
   }
-  const RibbonVoxels voxels = between ? RibbonVoxels(*between) : std::move(*ofLevels);
+  const RibbonVoxels voxels(between ? *between : first);
   takeThickness(ribbon, voxels, result);
   result.columns = columnsOf(voxels.annulus, voxels.found);
   result.seconds.growing = watch.lap();
