@@ -145,6 +145,20 @@ TEST(ThicknessCommand, LambdaZeroIsTheLagrangianMethod) {
   EXPECT_EQ(explica(thickness(folder, "shell.nii.gz", {"--lambda", "-1"})).exitCode, 1);
 }
 
+TEST(ThicknessCommand, LambdaByItselfMeansTheHybrid) {
+  TemporaryFolder folder;
+  writeShell(folder / "shell.nii.gz");
+  const auto hashesWith = [&](const std::vector<std::string>& words) {
+    EXPECT_EQ(explica(thickness(folder, "shell.nii.gz", words)).exitCode, 0);
+    return stableHashes(folder.path() / "out").at("thickness.nii.gz");
+  };
+  const auto followed = hashesWith({});
+  const auto dialled = hashesWith({"--lambda", "5"});
+  EXPECT_LT(double(readJson(folder / "out/summary.json")["traced_fraction"]), 0.9);
+  EXPECT_NE(dialled, followed);
+  EXPECT_EQ(dialled, hashesWith({"--method", "hybrid", "--lambda", "5"}));
+}
+
 TEST(ThicknessCommand, LevelSetsGiveTheExactThicknessOfSpheroids) {
   TemporaryFolder folder;
   ASSERT_EQ(

@@ -330,15 +330,17 @@ std::vector<std::int32_t> orderByValue(const Tracer& tracer, const std::vector<d
 }  // namespace
 
 Correspondence findCorrespondences(const Annulus& annulus, const Interpolant& interpolant,
-                                   const CorrespondenceOptions& options, const Monitor& monitor) {
-  if (options.lambda && !(*options.lambda >= 0))
+                                   const CorrespondenceOptions& given, const Monitor& monitor) {
+  if (given.lambda && !(*given.lambda >= 0))
     throw InvalidInput("lambda must be 0 or more millimetres");
+  CorrespondenceOptions options = given;
+  if (options.lambda && options.method == Method::Lagrangian) options.method = Method::Hybrid;
   const bool isDialled = options.method == Method::Hybrid || options.method == Method::AppendixA;
   const bool followAll =
       options.method == Method::Lagrangian || (isDialled && options.lambda == 0.0);
-  TraceOptions trace = options.trace;
-  if (!followAll) trace.maxStep = std::min(trace.maxStep, 1.0);  // from one grid face to the next
-  const TrajectoryTracer tracer(annulus, interpolant, trace);
+  double& longest = options.trace.maxStep;
+  if (!followAll) longest = std::min(longest, 1.0);  // from one grid face to the next
+  const TrajectoryTracer tracer(annulus, interpolant, options.trace);
   const Tracer& field = tracer.field();
   Sweep inner(field, options, true);
   Sweep outer(field, options, false);

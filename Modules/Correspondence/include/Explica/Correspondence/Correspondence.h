@@ -15,7 +15,7 @@ enum class Method {
   Hybrid,      ///< trajectories followed to the first grid face whose corners agree; second order
   AppendixA,   ///< the hybrid of the thesis's appendix A to the letter, lambda its dial
   Eulerian,    ///< ordered sweep alone, boundary values at grid points [YezziPrince2003]
-  Lagrangian,  ///< every trajectory followed to the boundary
+  Lagrangian,  ///< every trajectory followed to the boundary; with a lambda, the hybrid
 };
 constexpr auto enumWords(Method) {
   using enum Method;
@@ -39,9 +39,9 @@ void describe(CorrespondenceOptions& options, Visitor&& visit) {
   visit(Field{"method", "", "how boundary points and lengths are found"}, options.method);
   visit(
       Field{"lambda", "mm",
-            "hybrid, appendix-a: boundary points of neighbours nearer than this are "
-            "interpolated, others followed; 0 follows all (default: 1.4 times the longest diagonal "
-            "of a grid face)",
+            "boundary points of neighbours nearer than this are interpolated (hybrid, appendix-a), "
+            "others followed; 0 follows all (default: all are followed; of those two methods 1.4 "
+            "times the longest diagonal of a grid face)",
             0},
       options.lambda);
 }
