@@ -5,7 +5,6 @@
 #include "Explica/Application/Plausible.h"
 #include "Explica/Application/ReadInputs.h"
 #include "Explica/Core/Errors.h"
-#include "Explica/Core/Memory.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Core/Stopwatch.h"
 #include "Explica/Correspondence/Measurement.h"
@@ -188,7 +187,6 @@ void writeGrid(Context& context, const correspondence::AnatomicalGrid& grid) {
 }
 
 Termination run(Context& context, const ThicknessSettings& s) {
-  keepFreedMemory();
   Judge judge(context, s.accept);
   harmonic::Annulus annulus = readAnnulus(context, s);
   const std::size_t atBorder = harmonic::countAtImageBorder(annulus);

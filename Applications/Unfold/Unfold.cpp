@@ -22,8 +22,6 @@
 #include "Explica/Repulsion/KnotEnergy.h"
 #include "Explica/Unfolding/Account.h"
 
-#include <malloc.h>
-
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -186,17 +184,6 @@ TriangleMesh readUsable(Context& context, const UnfoldSettings& s, io::SurfaceMe
   return mesh;
 }
 
-/// Memory that a step frees is taken again by the next: pages stay with the process, which would
-/// otherwise spend a tenth of its time having them cleared.
-void keepFreedMemory() {
-#ifdef __GLIBC__
-  constexpr int kMappedFrom = 1 << 25;     // bytes: the most that the allocator lets us choose
-  constexpr int kGivenBackFrom = 1 << 29;  // bytes of freed memory at its end
-  mallopt(M_MMAP_THRESHOLD, kMappedFrom);
-  mallopt(M_TRIM_THRESHOLD, kGivenBackFrom);
-#endif
-}
-
 /// Says beforehand how long the exact knot energy takes, which grows with the square of the
 /// surface.
 void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
@@ -210,7 +197,6 @@ void sayHowLong(Context& context, const UnfoldSettings& s, const Unfolded& u) {
 }
 
 Termination run(Context& context, const UnfoldSettings& s) {
-  keepFreedMemory();
   const Stopwatch seconds;
   Unfolded u;
   u.before = readUsable(context, s, u.metadata);

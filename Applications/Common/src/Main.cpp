@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Memory.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Software.h"
 #include "Limits.h"
@@ -212,6 +213,7 @@ std::string whatWasLost(const Console& console) {
 }  // namespace
 
 int runMain(int argc, char** argv) {
+  keepFreedMemory();
   const std::vector<std::string> all(argv, argv + argc);
   Console console;
   std::string command;
