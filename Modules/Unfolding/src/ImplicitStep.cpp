@@ -146,7 +146,7 @@ bool ImplicitStep::attempt() {
   {
     const PhaseClock clock(now_.phases.collision);
     findSafeStep(u_.contacts, state_.positions, motion);
-    weldBlocking(u_.contacts, state_.positions, u_.setup.unknown, gradient_, motion);
+    clearWay(u_.contacts, state_.positions, u_.setup.unknown, gradient_, motion);
     onTheWay = u_.contacts.contactsOf(collision::pairsOf(motion.meetings));
   }
   if (!(motion.descent < 0) || !search(motion, onTheWay)) return false;

@@ -6,6 +6,7 @@
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -86,41 +87,92 @@ void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion) 
   motion.safe = safeShare(contacts, motion.meetings, x, motion.by);
 }
 
-std::vector<Pair> blockingPairs(const Contacts& contacts, const Positions& x,
-                                const Motion& motion) {
+namespace {
+
+/// A pair that alone would stop the motion before kBlocked of it, and the share that it allows.
+struct Blocking {
+  Pair pair;
+  double share;
+};
+
+std::vector<Blocking> blockingPairs(const Contacts& contacts, const Positions& x,
+                                    const Motion& motion) {
   const collision::AdvanceOptions options = advanceFrom(contacts, x, motion.by);
-  std::vector<char> blocks(motion.meetings.size(), 0);
-  parallelFor(blocks.size(), 512, [&](std::size_t n) {
+  std::vector<double> shares(motion.meetings.size());
+  parallelFor(shares.size(), 512, [&](std::size_t n) {
     const std::span<const collision::Meeting> one(&motion.meetings[n], 1);
-    blocks[n] = collision::largestSafeStep(contacts.scene(), one, x, motion.by, kBlocked, options) <
-                kBlocked;
+    shares[n] = collision::largestSafeStep(contacts.scene(), one, x, motion.by, kBlocked, options);
   });
-  std::vector<Pair> blocking;
-  for (std::size_t n = 0; n < blocks.size(); ++n) {
-    if (blocks[n] != 0) blocking.push_back(motion.meetings[n].pair);
+  std::vector<Blocking> blocking;
+  for (std::size_t n = 0; n < shares.size(); ++n) {
+    if (shares[n] < kBlocked) blocking.push_back({motion.meetings[n].pair, shares[n]});
   }
   return blocking;
 }
 
-void weldBlocking(const Contacts& contacts, const Positions& x,
-                  const std::vector<std::int32_t>& unknown, const Positions& gradient,
-                  Motion& motion) {
-  if (motion.safe >= kBlocked) return;
-  constexpr int kMaxWeldings = 8;
-  Welds welds(x.rows());
-  const collision::CollisionScene& scene = contacts.scene();
-  for (int welding = 0; welding < kMaxWeldings && motion.safe < kBlocked; ++welding) {
-    const std::vector<Pair> blocking = blockingPairs(contacts, x, motion);
+/// Changes the motion of pairs that block it, and of those that block it then, until none does.
+/// @param change  given the blocking pairs, changes `motion.by`; returns where
+template <class Change>
+void untilClear(const Contacts& contacts, const Positions& x, Motion& motion,
+                const Change& change) {
+  constexpr int kMostRounds = 8;
+  for (int round = 0; round < kMostRounds && motion.safe < kBlocked; ++round) {
+    const std::vector<Blocking> blocking = blockingPairs(contacts, x, motion);
     if (blocking.empty()) return;
-    for (const Pair& pair : blocking) {
-      const auto v = scene.vertices(pair);
+    const std::vector<std::int32_t> moved = change(blocking);
+    motion.meetings =
+        contacts.scene().updateMeetings(motion.meetings, x, motion.by, contacts.range(), moved);
+    motion.safe = safeShare(contacts, motion.meetings, x, motion.by);
+  }
+}
+
+/// Blocking pairs go along as one, without turning, or stay where something holds them.
+void weld(const Contacts& contacts, const Positions& x, const std::vector<std::int32_t>& unknown,
+          Motion& motion) {
+  Welds welds(x.rows());
+  untilClear(contacts, x, motion, [&](const std::vector<Blocking>& blocking) {
+    for (const Blocking& one : blocking) {
+      const auto v = contacts.scene().vertices(one.pair);
       for (int i = 1; i < 4; ++i) welds.join(v[0], v[i]);
     }
-    const std::vector<std::int32_t> moved = welds.moveAsOne(unknown, motion.by);
-    motion.meetings = scene.updateMeetings(motion.meetings, x, motion.by, contacts.range(), moved);
-    motion.safe = safeShare(contacts, motion.meetings, x, motion.by);
-    motion.descent = (gradient.array() * motion.by.array()).sum();
+    return welds.moveAsOne(unknown, motion.by);
+  });
+}
+
+/// Vertices of a blocking pair go as much less as it allows.
+void slow(const Contacts& contacts, const Positions& x, const std::vector<std::int32_t>& unknown,
+          Motion& motion) {
+  untilClear(contacts, x, motion, [&](const std::vector<Blocking>& blocking) {
+    std::map<std::int32_t, double> shares;
+    for (const Blocking& one : blocking) {
+      for (const std::int32_t v : contacts.scene().vertices(one.pair)) {
+        if (unknown[v] < 0) continue;
+        double& share = shares.try_emplace(v, one.share).first->second;
+        share = std::min(share, one.share);
+      }
+    }
+    std::vector<std::int32_t> slowed;
+    for (const auto& [v, share] : shares) {
+      motion.by.row(v) *= share;
+      slowed.push_back(v);
+    }
+    return slowed;
+  });
+}
+
+}  // namespace
+
+void clearWay(const Contacts& contacts, const Positions& x,
+              const std::vector<std::int32_t>& unknown, const Positions& gradient, Motion& motion) {
+  if (motion.safe >= kBlocked) return;
+  const Motion proposed = motion;
+  weld(contacts, x, unknown, motion);
+  if (motion.safe < kBlocked) {
+    // Each weld runs into the next pair, where many lie close: a jam.
+    motion = proposed;
+    slow(contacts, x, unknown, motion);
   }
+  motion.descent = (gradient.array() * motion.by.array()).sum();
 }
 
 }  // namespace explica::unfolding

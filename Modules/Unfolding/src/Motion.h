@@ -20,15 +20,12 @@ struct Motion {
 /// Finds `meetings` and `safe` of a motion from `x`.
 void findSafeStep(const Contacts& contacts, const Positions& x, Motion& motion);
 
-/// Pairs that alone would stop the motion before kBlocked of it.
-[[nodiscard]] std::vector<collision::Pair> blockingPairs(const Contacts& contacts,
-                                                         const Positions& x, const Motion& motion);
-
-/// Pairs that still stop the motion go along without turning, or stay where something holds them.
+/// Where pairs stop the motion before kBlocked of it, they go along as one, or stay where something
+/// holds them; where that leads from one pair to the next, they go as far as they may, and the rest
+/// goes on.  A motion that nothing stops stays as it is.
 /// @param unknown   V: -1 for vertices that stay
 /// @param gradient  V x 3, of the objective
-void weldBlocking(const Contacts& contacts, const Positions& x,
-                  const std::vector<std::int32_t>& unknown, const Positions& gradient,
-                  Motion& motion);
+void clearWay(const Contacts& contacts, const Positions& x,
+              const std::vector<std::int32_t>& unknown, const Positions& gradient, Motion& motion);
 
 }  // namespace explica::unfolding

@@ -590,6 +590,40 @@ TEST(Motion, HoweverOftenAPairIsPressedItDoesNotCrossInSinglePrecision) {
   EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
 }
 
+/// Triangles one over the other, `gap` mm apart, and a last one far above them.
+TriangleMesh stacked(int count, double gap) {
+  TriangleMesh mesh;
+  mesh.positions.resize(3 * count, 3);
+  mesh.faces.resize(count, 3);
+  for (int n = 0; n < count; ++n) {
+    const double z = n + 1 < count ? n * gap : 10;
+    mesh.positions.middleRows(3 * n, 3) << 0, 0, z, 1, 0, z, 0, 1, z;
+    mesh.faces.row(n) << 3 * n, 3 * n + 1, 3 * n + 2;
+  }
+  return mesh;
+}
+
+TEST(Motion, AJamHoldsUpNothingButItself) {
+  const int count = 24;
+  const TriangleMesh mesh = stacked(count, 0.01);
+  const Region region = regionOfMarked(mesh, std::vector<bool>(3 * count, true));
+  const PatchSetup setup =
+      setUpPatch(mesh, region, visibility::viewpoint(Point(0, 0, 1000)), with(Surround::None));
+  const Contacts contacts(setup, with(Surround::None));
+  Motion motion;
+  motion.by = Positions::Zero(mesh.vertexCount(), 3);
+  motion.by.topRows(3).col(2).setConstant(1);  // far beyond all others
+  motion.by.bottomRows(3).col(2).setConstant(1);
+  const Positions asked = motion.by, gradient = -motion.by;
+  findSafeStep(contacts, mesh.positions, motion);
+  ASSERT_LT(motion.safe, 0.02);
+  clearWay(contacts, mesh.positions, setup.unknown, gradient, motion);
+  EXPECT_GE(motion.safe, kBlocked);
+  EXPECT_EQ(motion.by.bottomRows(3), asked.bottomRows(3));
+  EXPECT_GT(motion.by(0, 2), 0.001);
+  EXPECT_LT(motion.descent, 0);
+}
+
 TEST(Unfolder, APairThatStartsInContactHoldsUpNoStep) {
   const Case c;
   // One that can open, and a face held from both sides, which cannot.
