@@ -42,6 +42,7 @@ std::vector<EvolutionColumn> listColumns() {
   std::vector<EvolutionColumn> list = {column("visibility", "%.6f", &R::visibility),
                                        column("area_error_mean", "%.6g", &R::areaErrorMean),
                                        column("area_error_max", "%.6g", &R::areaErrorMax),
+                                       column("area_error_share", "%.6g", &R::areaErrorShare),
                                        column("edge_strain_mean", "%.6g", &R::edgeStrainMean),
                                        column("collar_stretch_mean", "%.6g", &R::collarStretchMean),
                                        column("collar_stretch_max", "%.6g", &R::collarStretchMax)};

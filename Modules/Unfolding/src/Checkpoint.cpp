@@ -9,7 +9,7 @@
 namespace explica::unfolding {
 namespace {
 
-constexpr char kFormat[] = "ExplicaUnfold14";  // the number counts changes of what is stored
+constexpr char kFormat[] = "ExplicaUnfold15";  // the number counts changes of what is stored
 
 /// A state holds a value a term: one with other terms is another format.
 std::string magic() {
@@ -23,10 +23,10 @@ void visitRecord(const Access& access, Record& r) {
   for (auto* number : {&r.iteration, &r.contacts, &r.solves}) access(*number);
   access(r.phase);
   for (auto* number :
-       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.edgeStrainMean, &r.collarStretchMean,
-        &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter, &r.nearestContact, &r.safeStep,
-        &r.step, &r.largestMove, &r.damping, &r.phases.visibility, &r.phases.repulsion,
-        &r.phases.collision, &r.phases.solve, &r.seconds}) {
+       {&r.visibility, &r.areaErrorMean, &r.areaErrorMax, &r.areaErrorShare, &r.edgeStrainMean,
+        &r.collarStretchMean, &r.collarStretchMax, &r.objectiveBefore, &r.objectiveAfter,
+        &r.nearestContact, &r.safeStep, &r.step, &r.largestMove, &r.damping, &r.phases.visibility,
+        &r.phases.repulsion, &r.phases.collision, &r.phases.solve, &r.seconds}) {
     access(*number);
   }
   for (auto& energy : r.energies.values) access(energy);

@@ -57,8 +57,8 @@ bool areasAreHeld(const std::vector<IterationRecord>& history, double tolerance)
   for (const IterationRecord& record : window.subspan(1)) {
     if (record.phase != Phase::Settling) return false;
   }
-  const double error = window.back().areaErrorMean;
-  return window.front().areaErrorMean - error < std::min(kAccuracy / 2, error - tolerance);
+  const double error = window.back().areaErrorShare;
+  return window.front().areaErrorShare - error < std::min(kAccuracy / 2, error - tolerance);
 }
 
 /// Strength of the visibility term at which one per cent of visibility costs the strain that it is
@@ -133,7 +133,7 @@ Termination Continuation::endOf(Unfolder& unfolder, const std::vector<IterationR
       !target && !gives &&
       merit(last.visibility, last.edgeStrainMean, now.seen, options_.trade) > kAccuracy;
   if (!enough && !(now.rests() && now.isWeighed())) return Termination::NotRun;
-  const bool kept = last.areaErrorMean <= options_.areaTolerance;
+  const bool kept = last.areaErrorShare <= options_.areaTolerance;
   if (!kept && (enough || reached || !areasAreHeld(history, options_.areaTolerance))) {
     return Termination::NotRun;
   }
@@ -150,7 +150,7 @@ void Continuation::steer(Unfolder& unfolder, const Outlook& now) const {
   }
   const double drive = unfolder.state().drive, most = std::max(drive, largestDrive(options_));
   const bool slow = now.rests() || (drive >= most && now.change < 3 * kAccuracy);
-  const bool kept = now.last.areaErrorMean <= options_.areaTolerance;
+  const bool kept = now.last.areaErrorShare <= options_.areaTolerance;
   const bool settles = !kept && (slow || now.visibility > now.aim - 2 * kAccuracy);
   unfolder.steer(settles ? Phase::Settling : Phase::Weighing,
                  std::min(most, drive * steering(now.visibility, now.aim)) / drive);

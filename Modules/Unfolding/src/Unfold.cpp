@@ -59,7 +59,7 @@ double seenIfAsked(Unfolder& unfolder) {
 /// Takes note of a state if it keeps areas and is better than all before.
 void consider(Unfolder& unfolder, const UnfoldOptions& options, BestState& best) {
   const IterationRecord& now = unfolder.record();
-  if (now.areaErrorMean > options.areaTolerance) return;
+  if (now.areaErrorShare > options.areaTolerance) return;
   const double seen = seenIfAsked(unfolder);
   if (!isBetter(now, best, options.targetVisibility.has_value(), seen, options.trade)) return;
   best = {now.iteration, now.visibility, now.edgeStrainMean, movingOnly(unfolder), seen};
@@ -117,9 +117,9 @@ void sayWhatIsShort(const UnfoldOptions& options, const IterationRecord& kept, d
         "edges are strained by %.2f %% in the mean, %.2f %% beyond their goal of %g %%",
         100 * kept.edgeStrainMean, 100 * (kept.edgeStrainMean - kGoalStrain), 100 * kGoalStrain));
   }
-  if (kept.areaErrorMean > options.areaTolerance) {
-    monitor.warn(printed("areas are off by %.2f %% in the mean, where %.2f %% counts as kept",
-                         100 * kept.areaErrorMean, 100 * options.areaTolerance));
+  if (kept.areaErrorShare > options.areaTolerance) {
+    monitor.warn(printed("areas are off by %.2f %% of the whole, where %.2f %% counts as kept",
+                         100 * kept.areaErrorShare, 100 * options.areaTolerance));
   }
 }
 
@@ -138,7 +138,7 @@ Flag flagOf(const UnfoldOptions& options, const UnfoldResult& result, const Iter
     return Flag::Stretched;
   }
   const bool met = meetsGoals(goalOf(options), kept.visibility, seen, kept.edgeStrainMean);
-  return met && kept.areaErrorMean <= options.areaTolerance ? Flag::None : Flag::Held;
+  return met && kept.areaErrorShare <= options.areaTolerance ? Flag::None : Flag::Held;
 }
 
 /// Says what a user must know about the result, and does not call it what it is not.

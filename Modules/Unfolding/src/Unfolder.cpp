@@ -93,18 +93,21 @@ void Unfolder::Implementation::measure(IterationRecord& account) const {
           ? meanFlux()
           : visibility::AverageVisibility(setup.mesh.faces, setup.region.faces, viewpoints)
                 .value(state.positions);
-  double sum = 0, largest = 0;
+  double sum = 0, largest = 0, off = 0, area = 0;
   const auto faces = setup.patch.ofRegion();
   std::vector<double> errors(faces.size());
   parallelFor(faces.size(), [&](std::size_t f) {
     errors[f] = std::abs(shapeOf(faces[f], state.positions).area / faces[f].restArea - 1);
   });
-  for (const double error : errors) {
-    sum += error;
-    largest = std::max(largest, error);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    sum += errors[f];
+    largest = std::max(largest, errors[f]);
+    off += errors[f] * faces[f].restArea;
+    area += faces[f].restArea;
   }
   account.areaErrorMean = sum / static_cast<double>(setup.patch.regionFaces);
   account.areaErrorMax = largest;
+  account.areaErrorShare = off / area;
   sum = 0;
   for (const PatchSpring& spring : setup.patch.regionEdges()) {
     sum += std::abs(lengthOf(spring, state.positions) / spring.restLength - 1);

@@ -206,7 +206,7 @@ TEST(Unfold, LengthsRecoverWhereMoreIsSeenThanNeeded) {
   const UnfoldResult result = unfold(dome, region, view, options);
   double strained = 0;  // at most, where areas are kept
   for (const IterationRecord& row : result.history) {
-    if (row.areaErrorMean <= options.areaTolerance) {
+    if (row.areaErrorShare <= options.areaTolerance) {
       strained = std::max(strained, row.edgeStrainMean);
     }
   }

@@ -29,7 +29,7 @@ struct UnfoldOptions {
   UnfolderOptions unfolder;
   std::optional<double> targetVisibility;  ///< stop once the average visibility reaches it
   double trade = kTrade;                   ///< strain that a visibility of 1 is worth, > 0
-  double areaTolerance = 0.002;            ///< ... and the mean relative area error is below this
+  double areaTolerance = 0.002;            ///< ... and faces lost or gained less of the area
   int maxIterations = 500;                 ///< > 0
   int frames = 0;                          ///< states to keep, evenly spaced in visibility
 };

@@ -99,6 +99,7 @@ struct IterationRecord {
   double visibility = kNaN;     ///< average flux density of the region, [-1, 1]
   double areaErrorMean = kNaN;  ///< mean |A / A0 - 1| over the region's faces
   double areaErrorMax = kNaN;
+  double areaErrorShare = kNaN;     ///< sum |A - A0| over sum A0: by it areas are kept or not
   double edgeStrainMean = kNaN;     ///< mean |l / l0 - 1| over the region's edges
   double collarStretchMean = kNaN;  ///< A / A0 of faces that move outside the region; NaN if none
   double collarStretchMax = kNaN;
