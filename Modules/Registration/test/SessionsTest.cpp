@@ -15,9 +15,9 @@ namespace {
 
 using Motion = Eigen::Isometry3d;
 
-constexpr double kSpacing = 7;  // mm
+constexpr double kSpacing = 4;  // mm
 
-Grid grid(int size = 32) {
+Grid grid(int size = 56) {
   Grid grid;
   grid.size = {size, size, size};
   grid.spacing = Vector::Constant(kSpacing);
@@ -125,8 +125,8 @@ TEST(NearbyRegistration, BringsAnImageOfAnotherContrastOntoTheFirst) {
   EXPECT_LT(apart(registerNearby(a, b), moved), 0.05 * kSpacing);
   // On long voxels of turned axes, too; brought back, what is seen lies where the first shows it.
   Grid turned = grid();
-  turned.spacing = Vector(7, 7, 9);
-  turned.size[2] = 25;
+  turned.spacing = Vector(4, 4, 6);
+  turned.size[2] = 38;
   turned.direction = placed(20, {1, 1, 0}, Vector::Zero()).linear();
   turned.origin = turned.direction * Point(-110, -110, -111);
   Volume<float> oblong(turned);
@@ -137,7 +137,7 @@ TEST(NearbyRegistration, BringsAnImageOfAnotherContrastOntoTheFirst) {
   }
   const Motion found = registerNearby(a, oblong);
   EXPECT_LT(apart(found, moved), 0.05 * kSpacing);
-  const Vector index(11, 18, 11);
+  const Vector index(20, 31, 17);
   const Point seen = turned.toWorld(index);
   EXPECT_LT((broughtBack(turned, found).toWorld(index) - moved.inverse() * seen).norm(), 0.5);
   EXPECT_THROW((void)registerNearby(a, Volume<float>(grid(), 1.0F)), InvalidInput);
