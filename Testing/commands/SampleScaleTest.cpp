@@ -10,10 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <sstream>
 
 namespace explica::testing {
@@ -38,35 +35,6 @@ void run(const Words& words) {
 void runExplica(const Words& words) {
   const CommandResult result = explica(words, patience());
   EXPECT_EQ(result.exitCode, 0) << result;
-}
-
-/// A sixth of the faces, those that lie farthest back: Workbench takes minutes for all of a cortex.
-std::vector<std::int32_t> backmost(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> faces(static_cast<std::size_t>(mesh.faceCount()));
-  std::iota(faces.begin(), faces.end(), 0);
-  std::sort(faces.begin(), faces.end(), [&](std::int32_t a, std::int32_t b) {
-    return mesh.corner(a, 0).y() < mesh.corner(b, 0).y();
-  });
-  faces.resize(faces.size() / 6);
-  return faces;
-}
-
-/// Some faces of a mesh, and their vertices.
-TriangleMesh partOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& faces) {
-  TriangleMesh part;
-  part.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
-  std::map<std::int32_t, std::int32_t> number;
-  std::vector<std::int32_t> vertices;
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (int c = 0; c < 3; ++c) {
-      const std::int32_t v = mesh.faces(faces[f], c);
-      const auto [at, isNew] = number.try_emplace(v, static_cast<std::int32_t>(vertices.size()));
-      if (isNew) vertices.push_back(v);
-      part.faces(static_cast<Eigen::Index>(f), c) = at->second;
-    }
-  }
-  part.positions = mesh.positions(vertices, Eigen::all);
-  return part;
 }
 
 /// Ours beside Workbench's mapping of the same volume on the same surface.
@@ -141,27 +109,22 @@ TEST_F(BesideWorkbench, EchoPlanarImageOfS1) {
   Eigen::Matrix4d coord;
   for (int i = 0; i < 16; ++i) coord(i / 4, i % 4) = json["coord"][i / 4][i % 4];
   const Eigen::Matrix4d matrix = io::readGrid(volume).affine() * coord;
-  const TriangleMesh white = io::readSurface(data / "wm_lh.gii").mesh,
-                     pial = io::readSurface(data / "pia_lh.gii").mesh;
-  const auto moved = [&](TriangleMesh mesh) {
+  const auto moved = [&](const char* name) {
+    TriangleMesh mesh = io::readSurface(data / name).mesh;
     mesh.positions = ((mesh.positions * matrix.topLeftCorner<3, 3>().transpose()).rowwise() +
                       matrix.topRightCorner<3, 1>().transpose())
                          .eval();
     return mesh;
   };
-  const std::vector<std::int32_t> kept = backmost(white);
-  const TriangleMesh whitePart = partOf(white, kept), pialPart = partOf(pial, kept);
-  const Beside beside = compare(volume, moved(whitePart), moved(pialPart));
+  const TriangleMesh white = moved("wm_lh.gii"), pial = moved("pia_lh.gii");
+  const Beside beside = compare(volume, white, pial);
   EXPECT_LT(beside.worst, 1e-4);
   EXPECT_GT(beside.correlation, 0.99);
   EXPECT_GT(beside.ribbon, 0.99);
 
   // The same through pycortex's own file.
-  io::writeSurface(folder_ / "white.surf.gii", whitePart);
-  io::writeSurface(folder_ / "pial.surf.gii", pialPart);
-  runExplica({"sample", volume, "--white", folder_ / "white.surf.gii", "--pial",
-              folder_ / "pial.surf.gii", "--to-volume", data / "transforms/fullhead_matrices.xfm",
-              "--out", folder_ / "x"});
+  runExplica({"sample", volume, "--white", data / "wm_lh.gii", "--pial", data / "pia_lh.gii",
+              "--to-volume", data / "transforms/fullhead_matrices.xfm", "--out", folder_ / "x"});
   const Eigen::VectorXd a = io::readVertexMaps(folder_ / "x/fullhead_reference.func.gii")[0].values,
                         b = io::readVertexMaps(folder_ / "one/volume.func.gii")[0].values;
   EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-4 * (b.maxCoeff() - b.minCoeff()));
@@ -188,10 +151,9 @@ TEST_F(BesideWorkbench, BrainOfBert) {
   const fs::path data = fs::path(EXPLICA_REAL_DATA) / "bert_freesurfer/mri";
   runExplica({"surface", data / "ribbon.mgz", "--preset", "ribbon", "--hemisphere", "L", "--faces",
               "60000", "--out", folder_ / "surface"});
-  const TriangleMesh white = io::readSurface(folder_ / "surface/white.surf.gii").mesh,
-                     pial = io::readSurface(folder_ / "surface/pial.surf.gii").mesh;
-  const std::vector<std::int32_t> kept = backmost(white);
-  const Beside beside = compare(data / "brain.mgz", partOf(white, kept), partOf(pial, kept));
+  const Beside beside =
+      compare(data / "brain.mgz", io::readSurface(folder_ / "surface/white.surf.gii").mesh,
+              io::readSurface(folder_ / "surface/pial.surf.gii").mesh);
   EXPECT_LT(beside.worst, 1e-4);
   // The ribbon mapping averages over all faces about a vertex, whose edges are 1.7 mm long here,
   // across the borders of a sharp image; columns of points do not.
