@@ -585,7 +585,7 @@ TEST(FlattenRegions, SeveralLabelsAndKeysMakeOnePatch) {
 /// A limit that has passed before any work begins: what the help promises does not hang on a clock.
 TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesOn) {
   TemporaryFolder folder;
-  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 30.0));
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
   const auto withWords = [&](std::vector<std::string> more, const std::string& out,
                              const CommandSetting& setting = {}) {
     std::vector<std::string> words = {
@@ -613,7 +613,7 @@ TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesO
   EXPECT_EQ(readText(folder / "a/flat.surf.gii"), readText(folder / "b/flat.surf.gii"));
   EXPECT_EQ(withWords({"--resume"}, "c").exitCode, 2);  // nothing lies there
 
-  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(5, 31.0));
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 31.0));
   const auto stranger = withWords({"--resume"}, "a");
   EXPECT_EQ(stranger.exitCode, 2);
   EXPECT_NE(stranger.err.find("another surface"), std::string::npos) << stranger;
@@ -621,7 +621,7 @@ TEST(FlattenLimit, CutsAreWrittenWhereverTheSearchForThemIsStoppedAndTheRunGoesO
 
 TEST(FlattenLimit, AStopBetweenCutsAndMapLeavesTheCuts) {
   TemporaryFolder folder;
-  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(4, 30.0));
+  io::writeSurface(folder / "sphere.surf.gii", geometry::makeFoldedSphere(3, 30.0));
   const std::vector<std::string> words = {
       "flatten",   folder / "sphere.surf.gii", "--cuts", "auto", "--threads", "1", "--out",
       folder / "a"};

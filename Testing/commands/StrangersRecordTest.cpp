@@ -228,19 +228,17 @@ TEST_F(StrangersRecord, WithWrongTypesAnywhereGetsASentence) {
   eachPlace(record, Json::json_pointer(), places);
   ASSERT_GT(places.size(), 80u);
   for (std::size_t n = 0; n < places.size(); ++n) {
-    for (std::size_t turn = 0; turn < 2; ++turn) {
-      Json changed = record;
-      changed[places[n]] = wrong[(2 * n + turn + n / 4) % wrong.size()];
-      put(changed);
-      const std::vector<std::vector<std::string>> commands = {
-          {"verify", folder_ / "a", "--deep"},
-          {"history", folder_ / "a"},
-          {"verify", folder_ / "a", "--prov-json"},
-          {"replay", folder_ / "a", "--dry-run", "--out", folder_ / "b"}};
-      const auto result = explica(commands[(n + turn) % commands.size()]);
-      EXPECT_LE(result.exitCode, 3) << places[n] << changed[places[n]] << "\n" << result;
-      EXPECT_EQ(result.err.find("internal error"), std::string::npos) << places[n] << result;
-    }
+    Json changed = record;
+    changed[places[n]] = wrong[(n + n / 4) % wrong.size()];
+    put(changed);
+    const std::vector<std::vector<std::string>> commands = {
+        {"verify", folder_ / "a", "--deep"},
+        {"history", folder_ / "a"},
+        {"verify", folder_ / "a", "--prov-json"},
+        {"replay", folder_ / "a", "--dry-run", "--out", folder_ / "b"}};
+    const auto result = explica(commands[n % commands.size()]);
+    EXPECT_LE(result.exitCode, 3) << places[n] << changed[places[n]] << "\n" << result;
+    EXPECT_EQ(result.err.find("internal error"), std::string::npos) << places[n] << result;
   }
 }
 

@@ -231,13 +231,10 @@ TEST(AnatomicalGrid, FiniteElementsOnItGiveTheHarmonicFunction) {
   const ExactAnnulus exact = harmonic::exactSpheroids(30, 0.5, 1);
   std::array<double, 2> errors = {};
   for (int fine = 0; fine < 2; ++fine) {
-    const double h = fine ? 1 : 2;
-    const auto grid =
-        gridOf(exact,
-               harmonic::centredGrid(
-                   {static_cast<int>(64 / h), static_cast<int>(64 / h), static_cast<int>(88 / h)},
-                   Vector::Constant(h)),
-               fine ? 8 : 4);
+    const double h = fine ? 1.5 : 3;
+    const int across = fine ? 44 : 22, along = fine ? 60 : 30;
+    const auto grid = gridOf(
+        exact, harmonic::centredGrid({across, across, along}, Vector::Constant(h)), fine ? 6 : 3);
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::VectorXd load = Eigen::VectorXd::Zero(grid.points.rows());
     const auto fixed = [&](std::int32_t p) { return grid.depth[p] == 0 || grid.depth[p] == 1; };
@@ -266,7 +263,7 @@ TEST(AnatomicalGrid, FiniteElementsOnItGiveTheHarmonicFunction) {
     stiffness.setFromTriplets(entries.begin(), entries.end());
     Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver(
         stiffness);
-    solver.setTolerance(1e-8);
+    solver.setTolerance(1e-5);
     const Eigen::VectorXd u = solver.solve(load);
     ASSERT_EQ(solver.info(), Eigen::Success);
     for (Eigen::Index p = 0; p < grid.points.rows(); ++p) {

@@ -373,7 +373,7 @@ TEST(Correspondence, DoesNotDependOnTheNumberOfThreads) {
         return findCorrespondences(s.annulus, s.interpolant, with(Method::Hybrid, lambda));
       };
       const auto one = foundBy(1);
-      for (const int threads : {2, 4, 7}) {
+      for (const int threads : {2, 4}) {
         const auto many = foundBy(threads);
         EXPECT_EQ(one.innerDistance, many.innerDistance);
         EXPECT_EQ(one.outerDistance, many.outerDistance);

@@ -307,7 +307,7 @@ std::vector<Row> hostile() {
        surface, true},
       {"GiftiThatUnpacksToFarMore", "a.surf.gii", packed("<GIFTI>", 150'000'000), surface, true,
        kSmall},
-      {"ObjThatUnpacksToFarMore", "a.obj", packed("v 0 0 0\n", 150'000'000), surface, true, kSmall},
+      {"ObjThatUnpacksToFarMore", "a.obj", packed("v 0 0 0\n", 40'000'000), surface, true, kSmall},
       {"ObjOfOneLongFace", "a.obj",
        with("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", " 1", 8'000'000, "\n"), surface},
       {"ObjOfShortVertices", "a.obj", with("v 0 0 0\n", "v 0 1 0\n", 3'000'000, "f 1 2 3\n"),

@@ -140,14 +140,24 @@ TEST(Unfolder, ACollarIsAsWideAsTheRegionOrAsItIsDeep) {
 UnfoldOptions inTheFlask() {
   UnfoldOptions options;
   options.unfolder.collarWidth = 2.1;
+  options.frames = 4;
   return options;
 }
 
+/// The bottom of a flask, unfolded once for all tests.
+struct OutOfTheFlask {
+  Flask flask = Flask(8, 0.4);
+  Region region = regionOfMarked(flask.mesh, flask.bottom);
+  visibility::Viewpoints view = visibility::viewpoint(Point(0, 0, 1000));
+  UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
+};
+const OutOfTheFlask& outOfTheFlask() {
+  static const OutOfTheFlask once;
+  return once;
+}
+
 TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
-  const Flask flask(8, 0.4);
-  const Region region = regionOfMarked(flask.mesh, flask.bottom);
-  const auto view = visibility::viewpoint(Point(0, 0, 1000));
-  const UnfoldResult result = unfold(flask.mesh, region, view, inTheFlask());
+  const auto& [flask, region, view, result] = outOfTheFlask();
   // Out of the flask, at the cost of a goal: that is said.
   const IterationRecord& end = result.history[static_cast<std::size_t>(result.iteration)];
   const double seen = visibility::seenShare(result.mesh, region.faces, view);
@@ -166,23 +176,18 @@ TEST(Unfold, SurroundingsThatHoldTheRegionBelowArePartedFurther) {
 }
 
 TEST(Unfold, ResumesAcrossAPartingOfTheSurroundings) {
-  const Flask flask(8, 0.4);
-  const Region region = regionOfMarked(flask.mesh, flask.bottom);
-  const auto view = visibility::viewpoint(Point(0, 0, 1000));
-  UnfoldOptions options = inTheFlask();
-  options.frames = 4;
-  const UnfoldResult whole = unfold(flask.mesh, region, view, options);
+  const auto& [flask, region, view, whole] = outOfTheFlask();
   ASSERT_GE(whole.checkpoint.state.ways, 1);
-  for (const int part : {5, static_cast<int>(whole.history.size()) - 3}) {
-    UnfoldOptions brief = options;
-    brief.maxIterations = part;
-    const UnfoldResult begun = unfold(flask.mesh, region, view, brief);
-    const UnfoldResult rest = unfold(flask.mesh, region, view, options, {}, &begun.checkpoint);
-    EXPECT_EQ(whole.mesh.positions, rest.mesh.positions) << part;
-    ASSERT_EQ(whole.frames.size(), rest.frames.size());
-    for (std::size_t n = 0; n < whole.frames.size(); ++n) {
-      EXPECT_EQ(whole.frames[n].positions, rest.frames[n].positions) << part;
-    }
+  UnfoldOptions brief = inTheFlask();
+  brief.maxIterations = 5;
+  const UnfoldResult begun = unfold(flask.mesh, region, view, brief);
+  brief.maxIterations = static_cast<int>(whole.history.size()) - 3;
+  const UnfoldResult almost = unfold(flask.mesh, region, view, brief, {}, &begun.checkpoint);
+  const UnfoldResult rest = unfold(flask.mesh, region, view, inTheFlask(), {}, &almost.checkpoint);
+  EXPECT_EQ(whole.mesh.positions, rest.mesh.positions);
+  ASSERT_EQ(whole.frames.size(), rest.frames.size());
+  for (std::size_t n = 0; n < whole.frames.size(); ++n) {
+    EXPECT_EQ(whole.frames[n].positions, rest.frames[n].positions);
   }
 }
 
@@ -793,10 +798,11 @@ TEST(ThesisMethod, TheKnotEnergyPushesApart) {
 }
 
 TEST(Unfolder, KnotEnergyMayTakePart) {
-  const Case c;
+  const TriangleMesh mesh = makeMeander(24, 6, 2.1, 1);
   UnfolderOptions options = with(Surround::None);
   options.knot = repulsion::KnotMethod::AllPairs;
-  Unfolder unfolder(c.mesh, c.region, c.view, options);
+  Unfolder unfolder(mesh, regionOfMarked(mesh, interiorOf(24, 6, 1)),
+                    visibility::viewpoint(Point(8, 3, 1000)), options);
   for (int n = 0; n < 2; ++n) {
     ASSERT_TRUE(unfolder.step());
     EXPECT_LE(unfolder.record().objectiveAfter, unfolder.record().objectiveBefore);
