@@ -86,10 +86,10 @@ report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const Eigen::Ve
                                                                           : "";
     for (const bool lateral : {true, false}) {
       const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
-      views.views.push_back(
-          {name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-           scene.render(report::cameraFor(side.inflated, from, pixels.width, pixels.height),
-                        colours, report::Filling::Smooth, size)});
+      views.views.push_back({name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
+                             scene.render(report::cameraFor(side.inflated.positions, from,
+                                                            pixels.width, pixels.height),
+                                          colours, report::Filling::Smooth, size)});
     }
   }
   return views;

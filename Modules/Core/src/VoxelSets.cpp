@@ -7,6 +7,7 @@
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -76,6 +77,24 @@ void envelope(Line& line, double h) {
 }
 
 }  // namespace
+
+std::int64_t voxelsIn(const VoxelSet& set) {
+  return parallelSum(set.size(), 1 << 18, std::int64_t{0},
+                     [&](std::size_t begin, std::size_t end) -> std::int64_t {
+                       const auto first = set.data.begin();
+                       return static_cast<std::int64_t>(end - begin) -
+                              std::count(first + static_cast<std::ptrdiff_t>(begin),
+                                         first + static_cast<std::ptrdiff_t>(end), 0);
+                     });
+}
+
+std::int64_t voxelAt(const Grid& grid, const Point& place) {
+  const Vector index = grid.toIndex(place);
+  const int i = static_cast<int>(std::lround(index[0])),
+            j = static_cast<int>(std::lround(index[1])),
+            k = static_cast<int>(std::lround(index[2]));
+  return grid.contains(i, j, k) ? static_cast<std::int64_t>(grid.linear(i, j, k)) : -1;
+}
 
 Volume<float> squaredDistanceTo(const VoxelSet& set) {
   const Grid& grid = set.grid;

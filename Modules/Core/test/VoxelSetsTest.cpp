@@ -59,5 +59,25 @@ TEST(VoxelSets, ComponentsAreThoseOfAFloodInTheOrderOfTheirFirstVoxels) {
   }
 }
 
+TEST(VoxelSets, SquaredDistancesAreThoseToTheNearestVoxel) {
+  VoxelSet set = randomSet({14, 11, 9}, 0.004, 5);
+  set.grid.spacing = Vector(1, 2, 0.5);
+  std::vector<Point> places;
+  for (std::size_t v = 0; v < set.size(); ++v) {
+    const auto [i, j, k] = set.grid.subscripts(v);
+    if (set[v] != 0) places.emplace_back(set.grid.toWorld(Vector(i, j, k)));
+  }
+  ASSERT_GT(places.size(), 2U);
+  const Volume<float> squared = squaredDistanceTo(set);
+  for (std::size_t v = 0; v < set.size(); ++v) {
+    const auto [i, j, k] = set.grid.subscripts(v);
+    double least = kInfinity;
+    for (const Point& place : places) {
+      least = std::min(least, (set.grid.toWorld(Vector(i, j, k)) - place).squaredNorm());
+    }
+    EXPECT_NEAR(squared[v], least, 1e-5) << v;
+  }
+}
+
 }  // namespace
 }  // namespace explica

@@ -4,6 +4,7 @@
 #include "Explica/Flattening/Cuts.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "FoldWays.h"
 #include "LayFlat.h"
@@ -93,10 +94,7 @@ std::vector<Peak> peaksOf(const IntrinsicMesh& mesh, const Eigen::VectorXd& heig
       areas[mesh.faces(f, k)] += rest[f].area / 3;
     }
   }
-  std::vector<std::int32_t> order;
-  for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
-    if (height[v] > 0) order.push_back(v);
-  }
+  auto order = indicesWhere(near.size(), [&](std::size_t v) { return height[v] > 0; });
   std::ranges::stable_sort(order,
                            [&](std::int32_t a, std::int32_t b) { return height[a] > height[b]; });
   std::vector<Peak> peaks;

@@ -3,8 +3,9 @@
 
 #include "Explica/Flattening/Disc.h"
 
-#include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/IndicesWhere.h"
+#include "Explica/Geometry/FacePieces.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -15,61 +16,16 @@
 namespace explica::flattening {
 namespace {
 
-/// Number of the edge-connected part of each face, and the size of each part.
-std::vector<std::int32_t> edgeParts(const geometry::MeshTopology& topology, Eigen::Index faceCount,
-                                    std::vector<std::size_t>& sizes) {
-  DisjointSets sets(static_cast<std::size_t>(faceCount));
-  for (Eigen::Index e = 0; e < topology.edgeFaces.rows(); ++e) {
-    if (topology.edgeFaces(e, 1) < 0) continue;
-    sets.join(topology.edgeFaces(e, 0), topology.edgeFaces(e, 1));
-  }
-  std::vector<std::int32_t> part(static_cast<std::size_t>(faceCount));
-  sizes.assign(part.size(), 0);
-  for (std::size_t f = 0; f < part.size(); ++f) {
-    part[f] = sets.root(static_cast<std::int32_t>(f));
-    ++sizes[part[f]];
-  }
-  return part;
-}
-
-/// Fans of faces about a vertex: groups joined by edges at it.
-std::vector<std::vector<std::int32_t>> fansAt(const geometry::MeshTopology& topology,
-                                              const Faces& faces, std::int32_t v) {
-  const auto around = topology.vertexFaces[v];
-  std::vector<std::vector<std::int32_t>> fans;
-  std::vector<bool> taken(around.size(), false);
-  const auto shareEdge = [&](std::int32_t f, std::int32_t g) {
-    int common = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) common += faces(f, i) == faces(g, j);
-    }
-    return common == 2;
-  };
-  for (std::size_t first = 0; first < around.size(); ++first) {
-    if (taken[first]) continue;
-    taken[first] = true;
-    std::vector<std::int32_t> fan = {around[first]};
-    for (std::size_t at = 0; at < fan.size(); ++at) {
-      for (std::size_t other = 0; other < around.size(); ++other) {
-        if (taken[other] || !shareEdge(fan[at], around[other])) continue;
-        taken[other] = true;
-        fan.push_back(around[other]);
-      }
-    }
-    fans.push_back(std::move(fan));
-  }
-  return fans;
-}
-
 /// One pass of trimming: faces to keep, without those of all but the largest fan at each vertex
 /// where several meet, and without the smaller parts that hang on by vertices alone.
 std::vector<std::int32_t> withoutPinches(const TriangleMesh& mesh) {
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  std::vector<std::size_t> sizes;
-  const auto part = edgeParts(topology, mesh.faceCount(), sizes);
   std::vector<bool> drop(static_cast<std::size_t>(mesh.faceCount()), false);
+  const auto part = geometry::facePieces(topology, std::vector<bool>(drop.size(), true));
+  std::vector<std::size_t> sizes(part.size());
+  for (const std::int32_t p : part) ++sizes[p];
   for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
-    auto fans = fansAt(topology, mesh.faces, v);
+    auto fans = geometry::fansAt(mesh.faces, v, topology.vertexFaces[v]);
     if (fans.size() < 2) continue;
     // The fan on the larger part stays, then the larger fan, then the one of the first face.
     std::ranges::stable_sort(fans, [&](const auto& a, const auto& b) {
@@ -85,11 +41,7 @@ std::vector<std::int32_t> withoutPinches(const TriangleMesh& mesh) {
       }
     }
   }
-  std::vector<std::int32_t> kept;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    if (!drop[f]) kept.push_back(static_cast<std::int32_t>(f));
-  }
-  return kept;
+  return indicesWhere(drop.size(), [&](std::size_t f) { return !drop[f]; });
 }
 
 double lengthOf(const Loop& loop, const Positions& positions) {
@@ -112,31 +64,23 @@ void requireOriented(const TriangleMesh& mesh) {
 /// Leaves the piece that has more than half of the area.
 void keepLargest(Disc& disc) {
   const auto parts = geometry::faceComponents(disc.mesh.faces, disc.mesh.vertexCount());
-  const auto pieces = static_cast<std::size_t>(*std::ranges::max_element(parts)) + 1;
-  if (pieces == 1) return;
-  const Eigen::VectorXd faceAreas = geometry::faceAreas(disc.mesh);
-  std::vector<double> areas(pieces, 0.0);
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    areas[parts[f]] += faceAreas[f];
-  }
+  const std::vector<double> areas = geometry::pieceAreas(disc.mesh, parts);
+  if (areas.size() == 1) return;
   const auto largest = std::ranges::max_element(areas) - areas.begin();
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
   if (!(areas[largest] > all / 2)) {
     throw InvalidInput(
-        "surface: the part to be laid flat has " + std::to_string(pieces) +
+        "surface: the part to be laid flat has " + std::to_string(areas.size()) +
         " pieces, none with more than half of the area; give one of them, by --label or --cuts");
   }
-  std::vector<std::int32_t> kept;
-  for (std::size_t f = 0; f < parts.size(); ++f) {
-    if (parts[f] == largest) kept.push_back(static_cast<std::int32_t>(f));
-  }
+  const auto kept = indicesWhere(parts.size(), [&](std::size_t f) { return parts[f] == largest; });
   geometry::SubMesh part = geometry::extractFaces(disc.mesh, kept);
   for (std::int32_t& v : part.vertexOrigin) v = disc.vertexOrigin[v];
   for (std::int32_t& f : part.faceOrigin) f = disc.faceOrigin[f];
   disc.mesh = std::move(part.mesh);
   disc.vertexOrigin = std::move(part.vertexOrigin);
   disc.faceOrigin = std::move(part.faceOrigin);
-  disc.otherPieces = pieces - 1;
+  disc.otherPieces = areas.size() - 1;
   disc.areaOfOthers = 1 - areas[largest] / all;
 }
 

@@ -4,6 +4,7 @@
 #include "LayFlat.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Flattening/Coarsening.h"
 #include "Explica/Geometry/SparseCholesky.h"
@@ -170,11 +171,7 @@ Coarsened coarsened(const IntrinsicDisc& disc) {
 std::vector<std::int32_t> verticesOf(const IntrinsicMesh& mesh) {
   std::vector<bool> used(static_cast<std::size_t>(mesh.vertexCount), false);
   for (const std::int32_t v : mesh.faces.reshaped()) used[v] = true;
-  std::vector<std::int32_t> vertices;
-  for (std::int32_t v = 0; v < mesh.vertexCount; ++v) {
-    if (used[v]) vertices.push_back(v);
-  }
-  return vertices;
+  return indicesWhere(used.size(), [&](std::size_t v) { return used[v]; });
 }
 
 /// A map on its way from few vertices to all.

@@ -4,6 +4,8 @@
 #include "Explica/Flattening/Opening.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/IndicesWhere.h"
+#include "Explica/Geometry/FacePieces.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 
@@ -15,18 +17,12 @@ namespace explica::flattening {
 namespace {
 
 /// True for the faces of the part that has the largest area; none if there is no part.
-std::vector<bool> largestPart(const geometry::MeshTopology& topology, const Eigen::VectorXd& areas,
+std::vector<bool> largestPart(const geometry::MeshTopology& topology, const TriangleMesh& mesh,
                               const std::vector<bool>& chosen) {
   const auto part = geometry::facePieces(topology, chosen);
-  std::vector<double> sizes;
-  for (std::size_t f = 0; f < part.size(); ++f) {
-    if (part[f] < 0) continue;
-    if (part[f] >= static_cast<std::int32_t>(sizes.size())) sizes.resize(part[f] + 1, 0);
-    sizes[part[f]] += areas[f];
-  }
+  const std::vector<double> areas = geometry::pieceAreas(mesh, part);
+  const auto best = std::ranges::max_element(areas) - areas.begin();
   std::vector<bool> largest(part.size(), false);
-  if (sizes.empty()) return largest;
-  const auto best = std::ranges::max_element(sizes) - sizes.begin();
   for (std::size_t f = 0; f < part.size(); ++f) largest[f] = part[f] == best;
   return largest;
 }
@@ -46,37 +42,6 @@ class EdgeSet {
   }
   std::unordered_set<std::uint64_t> keys_;
 };
-
-/// The faces about a vertex in groups: of those that share an edge at it which is not cut.
-std::vector<std::vector<std::int32_t>> sidesOf(std::int32_t v, std::span<const std::int32_t> around,
-                                               const Faces& faces, const EdgeSet& cut) {
-  const auto joined = [&](std::int32_t f, std::int32_t g) {
-    for (int i = 0; i < 3; ++i) {
-      const std::int32_t a = faces(f, i);
-      if (a == v || cut.has(v, a)) continue;
-      for (int j = 0; j < 3; ++j) {
-        if (faces(g, j) == a) return true;
-      }
-    }
-    return false;
-  };
-  std::vector<std::vector<std::int32_t>> sides;
-  std::vector<bool> taken(around.size(), false);
-  for (std::size_t first = 0; first < around.size(); ++first) {
-    if (taken[first]) continue;
-    taken[first] = true;
-    std::vector<std::int32_t> side = {around[first]};
-    for (std::size_t at = 0; at < side.size(); ++at) {
-      for (std::size_t other = 0; other < around.size(); ++other) {
-        if (taken[other] || !joined(side[at], around[other])) continue;
-        taken[other] = true;
-        side.push_back(around[other]);
-      }
-    }
-    sides.push_back(std::move(side));
-  }
-  return sides;
-}
 
 EdgeSet edgesOf(const geometry::MeshTopology& topology, std::span<const CutPath> cuts) {
   EdgeSet cut;
@@ -98,21 +63,17 @@ EdgeSet edgesOf(const geometry::MeshTopology& topology, std::span<const CutPath>
 std::vector<std::int32_t> facesWithoutWall(const TriangleMesh& mesh,
                                            const std::vector<bool>& inCortex) {
   const auto topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
-  const Eigen::VectorXd areas = geometry::faceAreas(mesh);
   std::vector<bool> outside(static_cast<std::size_t>(mesh.faceCount()), false);
   for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
     for (int k = 0; k < 3; ++k) {
       if (!inCortex[mesh.faces(f, k)]) outside[f] = true;
     }
   }
-  const auto wall = largestPart(topology, areas, outside);
+  const auto wall = largestPart(topology, mesh, outside);
   std::vector<bool> rest(wall.size());
   for (std::size_t f = 0; f < wall.size(); ++f) rest[f] = !wall[f];
-  const auto cortex = largestPart(topology, areas, rest);
-  std::vector<std::int32_t> kept;
-  for (std::size_t f = 0; f < cortex.size(); ++f) {
-    if (cortex[f]) kept.push_back(static_cast<std::int32_t>(f));
-  }
+  const auto cortex = largestPart(topology, mesh, rest);
+  const auto kept = indicesWhere(cortex.size(), [&](std::size_t f) { return cortex[f]; });
   if (kept.empty()) throw InvalidInput("cortex: it has no face");
   if (kept.size() == cortex.size()) {
     throw InvalidInput("cortex: it is the whole surface, so that there is no medial wall");
@@ -130,7 +91,8 @@ std::vector<std::int32_t> openFaces(Faces& faces, Eigen::Index vertexCount,
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
   const Faces before = faces;
   for (const std::int32_t v : touched) {
-    const auto sides = sidesOf(v, topology.vertexFaces[v], before, cut);
+    const auto sides = geometry::fansAt(before, v, topology.vertexFaces[v],
+                                        [&](std::int32_t other) { return cut.has(v, other); });
     for (std::size_t n = 1; n < sides.size(); ++n) {
       const auto copy =
           static_cast<std::int32_t>(vertexCount) + static_cast<std::int32_t>(copyOf.size());

@@ -126,7 +126,6 @@ RimContact::PairTerm RimContact::term(const FlatPositions& flat, const Pair& pai
 }
 
 double RimContact::largestStep(const FlatPositions& flat, const FlatPositions& step) const {
-  constexpr double kShare = 0.8;  // of the way to the first contact
   const std::size_t count = rim_.size();
   const auto moved = [&](std::int32_t v) -> Plane { return at(flat, v) + at(step, v); };
   std::vector<geometry::Box> boxes(count);
@@ -145,7 +144,7 @@ double RimContact::largestStep(const FlatPositions& flat, const FlatPositions& s
                                           at(step, a), at(step, b)));
     });
   }
-  return std::min(1.0, kShare * first);
+  return std::min(1.0, kShareOfWay * first);
 }
 
 std::vector<std::array<std::int32_t, 2>> rimCrossings(const Loop& rim, const FlatPositions& flat) {

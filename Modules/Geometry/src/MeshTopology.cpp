@@ -6,6 +6,7 @@
 #include "Explica/Core/DisjointSets.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/FacePieces.h"
 #include "Explica/Geometry/Predicates.h"
 
 #include <algorithm>
@@ -101,30 +102,6 @@ bool inRange(const Faces& faces, std::int32_t f, Eigen::Index vertexCount) {
 
 bool repeatsVertex(const Faces& faces, std::int32_t f) {
   return faces(f, 0) == faces(f, 1) || faces(f, 1) == faces(f, 2) || faces(f, 2) == faces(f, 0);
-}
-
-/// Number of fans that a vertex's faces form: faces are in one fan if a chain of common edges at
-/// the vertex joins them.
-int fansAt(const Faces& faces, std::int32_t vertex, std::span<const std::int32_t> around) {
-  DisjointSets fans(around.size());
-  int count = static_cast<int>(around.size());
-  for (std::size_t i = 0; i < around.size(); ++i) {
-    for (std::size_t j = i + 1; j < around.size(); ++j) {
-      int common = 0;
-      for (int a = 0; a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) {
-          common += faces(around[i], a) == faces(around[j], b) && faces(around[i], a) != vertex;
-        }
-      }
-      const auto ri = fans.root(static_cast<std::int32_t>(i));
-      const auto rj = fans.root(static_cast<std::int32_t>(j));
-      if (common > 0 && ri != rj) {
-        fans.join(ri, rj);
-        --count;
-      }
-    }
-  }
-  return count;
 }
 
 bool collinear(const Point& a, const Point& b, const Point& c) {
@@ -333,7 +310,8 @@ MeshCondition inspectMesh(const TriangleMesh& mesh) {
   });
   const IndexLists around = facesOfVertices(soundFaces, mesh.vertexCount());
   condition.nonManifoldVertices = countOf(around.size(), [&](std::size_t v) {
-    return around[v].size() > 1 && fansAt(soundFaces, static_cast<std::int32_t>(v), around[v]) > 1;
+    return around[v].size() > 1 &&
+           fansAt(soundFaces, static_cast<std::int32_t>(v), around[v]).size() > 1;
   });
   for (const std::int32_t component : faceComponents(soundFaces, mesh.vertexCount())) {
     condition.components = std::max<std::int64_t>(condition.components, component + 1);

@@ -4,6 +4,7 @@
 #include "Explica/Geometry/SphereLocator.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Core/Parallel.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/Predicates.h"
@@ -63,11 +64,7 @@ std::vector<std::int32_t> turnedOver(const TriangleMesh& mesh) {
     turned[f] =
         sphericalOrientation(mesh.corner(face, 0), mesh.corner(face, 1), mesh.corner(face, 2)) <= 0;
   });
-  std::vector<std::int32_t> faces;
-  for (std::size_t f = 0; f < turned.size(); ++f) {
-    if (turned[f]) faces.push_back(static_cast<std::int32_t>(f));
-  }
-  return faces;
+  return indicesWhere(turned.size(), [&](std::size_t f) { return turned[f] != 0; });
 }
 
 SphereLocator::SphereLocator(TriangleMesh mesh) : mesh_(std::move(mesh)) {

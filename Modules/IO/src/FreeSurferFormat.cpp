@@ -68,12 +68,6 @@ void appendText(Bytes& bytes, const std::string& text) {
   bytes.insert(bytes.end(), text.begin(), text.end());
 }
 
-void write(const std::filesystem::path& path, const Bytes& bytes) {
-  WholeFile file(path);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
-}
-
 std::uint32_t packed(const LabelEntry& entry) {
   std::uint32_t colour = 0;
   for (int c = 0; c < 3; ++c) {
@@ -129,11 +123,6 @@ FreeSurferKind freeSurferKindOf(ByteView bytes) {
 
 LoadedSurface readFreeSurferSurface(const std::filesystem::path& path, ByteView bytes,
                                     const SurfaceReadOptions& options) {
-  LoadedSurface surface;
-  surface.origin.path = path;
-  surface.origin.format = "FreeSurfer";
-  surface.metadata.structure = structureFromName(path);
-  setTypesFromName(path, surface.metadata);
   ByteCursor cursor(path, bytes, true);
   MeshBuilder builder;
   FrameInFile frame;
@@ -171,17 +160,14 @@ LoadedSurface readFreeSurferSurface(const std::filesystem::path& path, ByteView 
       for (std::int32_t& c : corner) c = take24(cursor);
       // FreeSurfer alternates the diagonal with the parity of the first vertex.
       const bool even = corner[0] % 2 == 0;
-      builder.triangles.insert(builder.triangles.end(),
-                               {corner[0], corner[1], corner[even ? 3 : 2]});
-      if (even) {
-        builder.triangles.insert(builder.triangles.end(), {corner[2], corner[3], corner[1]});
-      } else {
-        builder.triangles.insert(builder.triangles.end(), {corner[0], corner[2], corner[3]});
+      for (const int k : {0, 1, even ? 3 : 2, even ? 2 : 0, even ? 3 : 2, even ? 1 : 3}) {
+        builder.triangles.push_back(corner[k]);
       }
     }
     builder.splitPolygons = static_cast<std::int64_t>(quads);
   }
-  surface.mesh = builder.finish(path, surface.origin.notes);
+  LoadedSurface surface = builder.finish(path, "FreeSurfer");
+  setTypesFromName(path, surface.metadata);
   moveToScanner(surface, frame, options);
   return surface;
 }
@@ -354,7 +340,7 @@ void writeFreeSurferSurface(const std::filesystem::path& path, const TriangleMes
   line("zras  ", geometry.direction.col(2));
   line("cras  ",
        geometry.toWorld(0.5 * Vector(geometry.size[0], geometry.size[1], geometry.size[2])));
-  write(path, bytes);
+  writeTextFile(path, textOf(bytes));
 }
 
 void rewriteFreeSurferSurface(const std::filesystem::path& path,
@@ -380,7 +366,7 @@ void rewriteFreeSurferSurface(const std::filesystem::path& path,
             static_cast<float>(positions(v, axis)), true);
     }
   }
-  write(path, bytes);
+  writeTextFile(path, textOf(bytes));
 }
 
 void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorXd& values,
@@ -390,7 +376,7 @@ void writeFreeSurferCurv(const std::filesystem::path& path, const Eigen::VectorX
   append(bytes, static_cast<std::int32_t>(faceCount), true);
   append(bytes, std::int32_t{1}, true);
   for (const double value : values) append(bytes, static_cast<float>(value), true);
-  write(path, bytes);
+  writeTextFile(path, textOf(bytes));
 }
 
 void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& labels) {
@@ -441,7 +427,7 @@ void writeFreeSurferAnnot(const std::filesystem::path& path, const LabelMap& lab
     const float opacity = std::clamp(entry.colour[3], 0.0F, 1.0F);
     append(bytes, static_cast<std::int32_t>(std::lround(255 * (1 - opacity))), true);
   }
-  write(path, bytes);
+  writeTextFile(path, textOf(bytes));
 }
 
 }  // namespace explica::io

@@ -301,34 +301,23 @@ ByteView viewOf(std::span<const T> values) {
 
 /// True if each side of a face is shared with a face that runs it the other way.
 bool isClosed(const Faces& faces) {
-  // The sides whose larger end is a vertex, together: few, which are then put in order.
-  const auto forSides = [&](const auto& visit) {
-    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-      for (int k = 0; k < 3; ++k) {
-        const auto a = static_cast<std::uint32_t>(faces(f, k));
-        const auto b = static_cast<std::uint32_t>(faces(f, (k + 1) % 3));
-        // Other end and direction: an even number marks the falling one.
-        const std::uint64_t side = static_cast<std::uint64_t>(std::min(a, b)) << 1;
-        visit(std::max(a, b), side | static_cast<std::uint64_t>(a < b));
-      }
-    }
-  };
-  const std::size_t vertices = static_cast<std::size_t>(faces.maxCoeff()) + 1;
-  std::vector<std::size_t> begin(vertices + 1, 0);
-  forSides([&](std::uint32_t v, std::uint64_t /*side*/) { ++begin[v + 1]; });
-  for (std::size_t v = 0; v < vertices; ++v) begin[v + 1] += begin[v];
-  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
-  std::vector<std::uint64_t> sides(begin.back());
-  forSides([&](std::uint32_t v, std::uint64_t side) { sides[next[v]++] = side; });
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if ((begin[v + 1] - begin[v]) % 2 != 0) return false;
-    std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin[v]),
-              sides.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
-    for (std::size_t i = begin[v]; i < begin[v + 1]; i += 2) {
-      if (sides[i + 1] != sides[i] + 1 || sides[i] % 2 != 0) return false;
+  // Both ends, the lesser first, and the direction: an even number marks the falling one.
+  std::vector<std::uint64_t> sides;
+  sides.reserve(static_cast<std::size_t>(faces.size()));
+  for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+    for (int k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(faces(f, k), faces(f, (k + 1) % 3));
+      sides.push_back(static_cast<std::uint64_t>(low) << 32 |
+                      static_cast<std::uint64_t>(high) << 1 |
+                      static_cast<std::uint64_t>(faces(f, k) < faces(f, (k + 1) % 3)));
     }
   }
-  return true;
+  std::ranges::sort(sides);
+  bool closed = sides.size() % 2 == 0;
+  for (std::size_t n = 0; closed && n < sides.size(); n += 2) {
+    closed = sides[n] % 2 == 0 && sides[n + 1] == sides[n] + 1;
+  }
+  return closed;
 }
 
 }  // namespace
@@ -367,14 +356,10 @@ LoadedSurface readGiftiSurface(const std::filesystem::path& path, ByteView bytes
                                       : -1);
   }
   std::vector<double>().swap(faces.values);
-  LoadedSurface surface;
-  surface.origin.path = path;
-  surface.origin.format = "GIFTI";
-  surface.mesh = builder.finish(path, surface.origin.notes);
-
+  LoadedSurface surface = builder.finish(path, "GIFTI");
   surface.metadata.structure =
       valueOr(points.metadata, "AnatomicalStructurePrimary",
-              valueOr(file.metadata, "AnatomicalStructurePrimary", structureFromName(path)));
+              valueOr(file.metadata, "AnatomicalStructurePrimary", surface.metadata.structure));
   setTypesFromName(path, surface.metadata);
   surface.metadata.secondary =
       valueOr(points.metadata, "AnatomicalStructureSecondary", surface.metadata.secondary);

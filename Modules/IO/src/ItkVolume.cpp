@@ -13,7 +13,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 
 namespace explica::io {
@@ -40,13 +39,12 @@ struct TextHeader {
   }
 };
 
-/// MetaIO reads as many numbers for these as NDims said before.
-bool needsDimension(const std::string& key) {
-  static const std::set<std::string> kKeys = {
-      "DimSize", "ElementSpacing",  "ElementSize", "Offset",      "Position",
-      "Origin",  "TransformMatrix", "Rotation",    "Orientation", "CenterOfRotation"};
-  return kKeys.contains(key);
-}
+/// Of these MetaIO reads as many numbers as NDims said before, or, where it is true, the square.
+const std::map<std::string, bool> kOfDimension = {
+    {"DimSize", false},       {"ElementSpacing", false},   {"ElementSize", false},
+    {"Offset", false},        {"Position", false},         {"Origin", false},
+    {"Rotation", true},       {"CenterOfRotation", false}, {"Orientation", true},
+    {"TransformMatrix", true}};
 
 TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFormat format) {
   TextHeader header;
@@ -75,7 +73,7 @@ TextHeader parseHeader(const std::filesystem::path& path, ByteView bytes, ItkFor
     if (custom) continue;
     std::string key = trimmed(line.substr(0, mark));
     if (format == ItkFormat::Nrrd) key = lowerCase(key);
-    if (format == ItkFormat::MetaImage && needsDimension(key) && header["NDims"].empty()) {
+    if (format == ItkFormat::MetaImage && kOfDimension.contains(key) && header["NDims"].empty()) {
       failToRead(path, "its header states '" + key + "' before NDims");
     }
     if (!header.fields.emplace(key, trimmed(line.substr(mark + 1))).second) {
@@ -158,21 +156,13 @@ StoredData metaImageData(const std::filesystem::path& path, const TextHeader& he
     failToRead(path, "its header gives " + std::to_string(sizes.size()) + " sizes for " +
                          std::to_string(dimension) + " dimensions");
   }
-  const std::pair<const char*, std::size_t> lengths[] = {{"ElementSpacing", dimension},
-                                                         {"ElementSize", dimension},
-                                                         {"Offset", dimension},
-                                                         {"Position", dimension},
-                                                         {"Origin", dimension},
-                                                         {"TransformMatrix", dimension * dimension},
-                                                         {"Rotation", dimension * dimension},
-                                                         {"Orientation", dimension * dimension},
-                                                         {"CenterOfRotation", dimension}};
-  for (const auto& [key, length] : lengths) {
+  for (const auto& [key, isMatrix] : kOfDimension) {
     if (header[key].empty()) continue;
+    const std::size_t length = isMatrix ? dimension * dimension : dimension;
     const std::vector<double> numbers = numbersIn(path, key, header[key]);
     if (numbers.size() != length) {
-      failToRead(path, std::string("its header gives ") + std::to_string(numbers.size()) +
-                           " values for '" + key + "'; " + std::to_string(length) + " are needed");
+      failToRead(path, "its header gives " + std::to_string(numbers.size()) + " values for '" +
+                           key + "'; " + std::to_string(length) + " are needed");
     }
   }
   if (!lowerCase(header["ElementType"]).starts_with("met_")) {

@@ -3,6 +3,8 @@
 
 #include "MeshBuilder.h"
 
+#include "SurfaceFrame.h"
+
 #include <cmath>
 #include <limits>
 
@@ -23,15 +25,18 @@ std::int32_t MeshBuilder::vertexNumber(std::int64_t inFile) {
              : static_cast<std::int32_t>(inFile);
 }
 
-TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
-                                 std::vector<std::string>& notes) {
+LoadedSurface MeshBuilder::finish(const std::filesystem::path& path, const char* format) {
   const std::size_t vertexCount = coordinates.size() / 3;
   const std::size_t faceCount = triangles.size() / 3;
   if (vertexCount == 0 || faceCount == 0) refuse(path, "holds no triangles; a surface is needed");
   if (std::max(vertexCount, faceCount) > std::numeric_limits<std::int32_t>::max()) {
     refuse(path, "has more vertices or faces than 32-bit indices count");
   }
-  TriangleMesh mesh;
+  LoadedSurface surface;
+  surface.origin.path = path;
+  surface.origin.format = format;
+  surface.metadata.structure = structureFromName(path);
+  TriangleMesh& mesh = surface.mesh;
   mesh.positions.resize(static_cast<Eigen::Index>(vertexCount), 3);
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     if (!std::isfinite(coordinates[i])) {
@@ -56,9 +61,10 @@ TriangleMesh MeshBuilder::finish(const std::filesystem::path& path,
     mesh.faces.data()[i] = vertex;
   }
   if (splitPolygons > 0) {
-    notes.push_back(std::to_string(splitPolygons) + " polygons were split into triangles");
+    surface.origin.notes.push_back(std::to_string(splitPolygons) +
+                                   " polygons were split into triangles");
   }
-  return mesh;
+  return surface;
 }
 
 std::size_t checkedCount(const std::filesystem::path& path, std::int64_t count,

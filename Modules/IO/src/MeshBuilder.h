@@ -25,10 +25,10 @@ struct MeshBuilder {
   void addPolygon(const std::filesystem::path& path, const std::int64_t* corners,
                   std::size_t count);
 
-  /// The mesh, into which what was gathered goes; notes how many polygons were split.
+  /// The surface, into which what was gathered goes, with the structure that its file's name tells;
+  /// notes how many polygons were split.
   /// @throws InvalidInput  no triangle, a missing vertex, a coordinate that is not finite
-  [[nodiscard]] TriangleMesh finish(const std::filesystem::path& path,
-                                    std::vector<std::string>& notes);
+  [[nodiscard]] LoadedSurface finish(const std::filesystem::path& path, const char* format);
 };
 
 /// A count from a file, bounded by the bytes that each item takes at least.

@@ -36,27 +36,25 @@ struct Header {
 /// Visits each field with its byte and type in NIfTI-1, and those in NIfTI-2.
 template <class Visit>
 void forFields(Header& header, const Visit& visit) {
-  constexpr std::int16_t kShort = 0;
-  constexpr std::int32_t kInt = 0;
-  constexpr std::int64_t kLong = 0;
-  constexpr float kFloat = 0;
-  constexpr double kDouble = 0;
+  using Short = std::int16_t;
+  using Int = std::int32_t;
+  using Long = std::int64_t;
   const auto numbers = [&](auto& row, std::size_t one, std::size_t two) {
     for (std::size_t n = 0; n < row.size(); ++n) {
-      visit(row[n], one + 4 * n, kFloat, two + 8 * n, kDouble);
+      visit(row[n], one + 4 * n, float{}, two + 8 * n, double{});
     }
   };
-  for (std::size_t n = 0; n < 8; ++n) visit(header.dim[n], 40 + 2 * n, kShort, 16 + 8 * n, kLong);
-  visit(header.intent, 68, kShort, 504, kInt);
-  visit(header.datatype, 70, kShort, 12, kShort);
-  visit(header.bits, 72, kShort, 14, kShort);
+  for (std::size_t n = 0; n < 8; ++n) visit(header.dim[n], 40 + 2 * n, Short{}, 16 + 8 * n, Long{});
+  visit(header.intent, 68, Short{}, 504, Int{});
+  visit(header.datatype, 70, Short{}, 12, Short{});
+  visit(header.bits, 72, Short{}, 14, Short{});
   numbers(header.pixdim, 76, 104);
-  visit(header.offset, 108, kFloat, 168, kLong);
-  visit(header.slope, 112, kFloat, 176, kDouble);
-  visit(header.intercept, 116, kFloat, 184, kDouble);
-  visit(header.units, 123, std::uint8_t{}, 500, kInt);
-  visit(header.qformCode, 252, kShort, 344, kInt);
-  visit(header.sformCode, 254, kShort, 348, kInt);
+  visit(header.offset, 108, float{}, 168, Long{});
+  visit(header.slope, 112, float{}, 176, double{});
+  visit(header.intercept, 116, float{}, 184, double{});
+  visit(header.units, 123, std::uint8_t{}, 500, Int{});
+  visit(header.qformCode, 252, Short{}, 344, Int{});
+  visit(header.sformCode, 254, Short{}, 348, Int{});
   numbers(header.quaternion, 256, 352);
   numbers(header.srow, 280, 400);
 }

@@ -110,9 +110,7 @@ void writePatch(const std::filesystem::path& path, const Patch& patch) {
       append(bytes, static_cast<float>(patch.positions(static_cast<Eigen::Index>(i), axis)), true);
     }
   }
-  WholeFile file(path);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
+  writeTextFile(path, textOf(bytes));
 }
 
 bool isPatchFile(const std::filesystem::path& path) {

@@ -19,16 +19,6 @@
 namespace explica::io {
 namespace {
 
-LoadedSurface finished(const std::filesystem::path& path, const char* format,
-                       MeshBuilder& builder) {
-  LoadedSurface surface;
-  surface.origin.path = path;
-  surface.origin.format = format;
-  surface.metadata.structure = structureFromName(path);
-  surface.mesh = builder.finish(path, surface.origin.notes);
-  return surface;
-}
-
 /// Says what a file holds beyond the faces that its header announces, blank space and comments
 /// aside.
 void noteRest(ByteCursor& cursor, LoadedSurface& surface) {
@@ -202,7 +192,7 @@ LoadedSurface readPly(const std::filesystem::path& path, ByteView bytes) {
       }
     }
   }
-  LoadedSurface surface = finished(path, "PLY", builder);
+  LoadedSurface surface = builder.finish(path, "PLY");
   noteRest(cursor, surface);
   surface.maps = std::move(maps);
   return surface;
@@ -255,7 +245,7 @@ LoadedSurface readObj(const std::filesystem::path& path, ByteView bytes) {
       builder.addPolygon(path, corners.data(), corners.size());
     }
   }
-  return finished(path, "OBJ", builder);
+  return builder.finish(path, "OBJ");
 }
 
 void writeObj(const std::filesystem::path& path, const TriangleMesh& mesh) {
@@ -317,7 +307,7 @@ LoadedSurface readOff(const std::filesystem::path& path, ByteView bytes) {
     for (std::int64_t& corner : corners) corner = parseNumber<std::int64_t>(path, words.word());
     builder.addPolygon(path, corners.data(), corners.size());
   }
-  LoadedSurface surface = finished(path, "OFF", builder);
+  LoadedSurface surface = builder.finish(path, "OFF");
   noteRest(cursor, surface);
   return surface;
 }
@@ -423,7 +413,7 @@ LoadedSurface mergedSurface(const std::filesystem::path& path, Corners<Real> cor
   MeshBuilder builder;
   mergeCorners(corners, builder);
   Corners<Real>().swap(corners);
-  LoadedSurface surface = finished(path, "STL", builder);
+  LoadedSurface surface = builder.finish(path, "STL");
   surface.origin.notes.push_back(std::to_string(count) + " corners merged to " +
                                  std::to_string(surface.mesh.vertexCount()) + " vertices");
   return surface;
@@ -459,9 +449,7 @@ void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
       }
     }
   }
-  WholeFile file(path);
-  file.write(bytes.data(), bytes.size());
-  file.commit();
+  writeTextFile(path, textOf(bytes));
 }
 
 }  // namespace explica::io

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 
 namespace explica::io {
 
@@ -45,28 +46,18 @@ constexpr auto enumWords(StoredType) {
 /// Calls action with a null pointer of the stored type.
 template <class Action>
 void withType(StoredType type, const Action& action) {
-  switch (type) {
-    case StoredType::Int8:
-      return action(static_cast<const std::int8_t*>(nullptr));
-    case StoredType::UInt8:
-      return action(static_cast<const std::uint8_t*>(nullptr));
-    case StoredType::Int16:
-      return action(static_cast<const std::int16_t*>(nullptr));
-    case StoredType::UInt16:
-      return action(static_cast<const std::uint16_t*>(nullptr));
-    case StoredType::Int32:
-      return action(static_cast<const std::int32_t*>(nullptr));
-    case StoredType::UInt32:
-      return action(static_cast<const std::uint32_t*>(nullptr));
-    case StoredType::Int64:
-      return action(static_cast<const std::int64_t*>(nullptr));
-    case StoredType::UInt64:
-      return action(static_cast<const std::uint64_t*>(nullptr));
-    case StoredType::Float32:
-      return action(static_cast<const float*>(nullptr));
-    case StoredType::Float64:
-      return action(static_cast<const double*>(nullptr));
+  // In the order of StoredType.
+  using Types = std::tuple<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+                           std::uint32_t, std::int64_t, std::uint64_t, float, double>;
+  const auto tryOne = [&]<std::size_t n>() {
+    if (static_cast<std::size_t>(type) != n) return false;
+    action(static_cast<const std::tuple_element_t<n, Types>*>(nullptr));
+    return true;
+  };
+  [&]<std::size_t... n>(std::index_sequence<n...>) {
+    static_cast<void>((tryOne.template operator()<n>() || ...));
   }
+  (std::make_index_sequence<std::tuple_size_v<Types>>{});
 }
 
 [[nodiscard]] std::size_t widthOf(StoredType type);

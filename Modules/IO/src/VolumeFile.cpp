@@ -319,7 +319,7 @@ namespace {
 
 /// Refuses sizes and places that no scanner or microscope gives: a header in other units, or torn.
 void requireUsualPlace(const std::filesystem::path& path, const Grid& grid) {
-  constexpr double kLeastSpacing = 1e-6, kMostSpacing = 1e6, kMostOffset = 1e7;  // mm
+  constexpr double kMostSpacing = 1e6;  // mm; its inverse is the least
   const auto number = [](double value) {
     std::ostringstream text;
     text << value;
@@ -327,11 +327,11 @@ void requireUsualPlace(const std::filesystem::path& path, const Grid& grid) {
   };
   for (int axis = 0; axis < 3; ++axis) {
     const double spacing = grid.spacing[axis];
-    if (spacing < kLeastSpacing || spacing > kMostSpacing) {
+    if (spacing < 1 / kMostSpacing || spacing > kMostSpacing) {
       refuse(path, "its header gives a voxel size of " + number(spacing) +
                        " mm; sizes from 1e-6 to 1e6 mm are read");
     }
-    if (std::abs(grid.origin[axis]) > kMostOffset) {
+    if (std::abs(grid.origin[axis]) > kFarthest) {
       refuse(path, "its header places the first voxel " + number(std::abs(grid.origin[axis])) +
                        " mm from the origin; up to 1e7 mm are read");
     }

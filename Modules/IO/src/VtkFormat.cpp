@@ -499,11 +499,7 @@ LoadedSurface readVtkSurface(const std::filesystem::path& path, ByteView bytes,
   }
   data.polygons = {};
   data.strips = {};
-  LoadedSurface surface;
-  surface.origin.path = path;
-  surface.origin.format = looksLikeVtkLegacy(bytes) ? "VTK" : "VTP";
-  surface.metadata.structure = structureFromName(path);
-  surface.mesh = builder.finish(path, surface.origin.notes);
+  LoadedSurface surface = builder.finish(path, looksLikeVtkLegacy(bytes) ? "VTK" : "VTP");
   surface.maps = std::move(data.pointMaps);
   FrameInFile frame;
   if (data.saysRas) frame.stated = "scanner";

@@ -4,6 +4,7 @@
 #include "Explica/Maps/LabelVolume.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/VoxelSets.h"
 
 #include <Eigen/Geometry>
 
@@ -26,10 +27,8 @@ class Shares {
   explicit Shares(const Grid& grid) : grid_(grid) {}
 
   void add(const Point& place, Label label, double volume) {
-    const Vector at = grid_.toIndex(place);
-    const int i = static_cast<int>(std::lround(at[0])), j = static_cast<int>(std::lround(at[1])),
-              k = static_cast<int>(std::lround(at[2]));
-    if (grid_.contains(i, j, k)) shares_[grid_.linear(i, j, k)][label] += volume;
+    const std::int64_t voxel = voxelAt(grid_, place);
+    if (voxel >= 0) shares_[voxel][label] += volume;
   }
 
   [[nodiscard]] Volume<Label> largest() const {

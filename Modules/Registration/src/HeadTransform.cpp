@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "Explica/Registration/HeadTransform.h"
 
+#include "Explica/Core/VoxelSets.h"
 #include "Filters.h"
 
 #include <Eigen/SVD>
@@ -62,11 +63,8 @@ Volume<Label> pulled(const Volume<Label>& inTemplate, const HeadTransform& trans
                      const Grid& grid) {
   Volume<Label> result(grid, 0);
   forLattice(grid, [&](int i, int j, int k) {
-    const Vector at = inTemplate.grid.toIndex(transform(grid.toWorld(Vector(i, j, k))));
-    const int si = static_cast<int>(std::lround(at.x()));
-    const int sj = static_cast<int>(std::lround(at.y()));
-    const int sk = static_cast<int>(std::lround(at.z()));
-    if (inTemplate.grid.contains(si, sj, sk)) result(i, j, k) = inTemplate(si, sj, sk);
+    const std::int64_t from = voxelAt(inTemplate.grid, transform(grid.toWorld(Vector(i, j, k))));
+    if (from >= 0) result(i, j, k) = inTemplate[from];
   });
   return result;
 }

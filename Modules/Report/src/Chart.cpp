@@ -24,7 +24,7 @@ constexpr double kRight = 14;      // pixels, margin
 constexpr double kTop = 30;        // pixels, margin
 constexpr double kBottom = 46;     // pixels, margin
 constexpr int kBins = 48;          // of a histogram
-constexpr double kLegendRow = 18;  // pixels
+constexpr double kLegendRow = 18;  // pixels, and the length of a line in it
 
 std::string number(double value) {
   return printed("%.2f", value);
@@ -179,12 +179,11 @@ std::string histogramSvg(const Eigen::VectorXd& values, const ChartText& titles)
   svg += text(axes.px(median) + (late ? -4 : 4), kTop + 10, late ? "end" : "start",
               "median " + significant(median));
   if (behind.empty()) return svg + "</svg>";
-  constexpr double kLine = 18;  // pixels
   svg += "<path class='behind' d='" + stepsOf(other, axes) + "'/>";
   const double y = kHeight + kLegendRow - 4;
-  svg += "<path class='behind' d='M" + number(kLeft) + " " + number(y - 4) + "h" + number(kLine) +
-         "'/>" +
-         text(kLeft + kLine + 5, y, "start",
+  svg += "<path class='behind' d='M" + number(kLeft) + " " + number(y - 4) + "h" +
+         number(kLegendRow) + "'/>" +
+         text(kLeft + kLegendRow + 5, y, "start",
               titles.behindName + ", median " + significant(behind[behind.size() / 2]));
   return svg + "</svg>";
 }
@@ -270,21 +269,21 @@ struct Legend {
 };
 
 Legend legendOf(const std::vector<Series>& series) {
-  constexpr double kLetter = 8.4, kLine = 18, kGap = 24;  // pixels, of the page's letters
+  constexpr double kLetter = 8.4, kGap = 24;  // pixels, of the page's letters
   Legend legend;
   if (series.size() < 2) return legend;
   legend.rows = 1;
   double x = kLeft;
   for (std::size_t s = 0; s < series.size(); ++s) {
-    const double width = kLine + kGap + kLetter * static_cast<double>(series[s].name.size());
+    const double width = kLegendRow + kGap + kLetter * static_cast<double>(series[s].name.size());
     if (x > kLeft && x + width > kWidth) {
       x = kLeft;
       ++legend.rows;
     }
     const double y = kHeight + kLegendRow * legend.rows - 4;
     legend.svg += "<path class='line'" + strokeOf(s) + " d='M" + number(x) + " " + number(y - 4) +
-                  "h" + number(kLine) + "'/>";
-    legend.svg += text(x + kLine + 5, y, "start", series[s].name);
+                  "h" + number(kLegendRow) + "'/>";
+    legend.svg += text(x + kLegendRow + 5, y, "start", series[s].name);
     x += width;
   }
   return legend;

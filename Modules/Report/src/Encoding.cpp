@@ -18,7 +18,7 @@ std::string deflated(std::string_view bytes) {
   return packed;
 }
 
-std::string packIntegers(const std::vector<std::int32_t>& values, int stride) {
+nlohmann::ordered_json packIntegers(const std::vector<std::int32_t>& values, int stride) {
   std::vector<std::uint32_t> folded(values.size());
   std::uint32_t most = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -36,8 +36,7 @@ std::string packIntegers(const std::vector<std::int32_t>& values, int stride) {
   for (int p = 0; p < planes; ++p) {
     for (const std::uint32_t value : folded) bytes.push_back(static_cast<char>(value >> (8 * p)));
   }
-  return "{\"n\":" + std::to_string(values.size()) + ",\"s\":" + std::to_string(stride) +
-         ",\"p\":" + std::to_string(planes) + ",\"d\":\"" + base64(deflated(bytes)) + "\"}";
+  return {{"n", values.size()}, {"s", stride}, {"p", planes}, {"d", base64(deflated(bytes))}};
 }
 
 std::vector<std::int32_t> facesInOrder(const Faces& faces) {

@@ -5,6 +5,8 @@
 #include "Explica/Core/Base64.h"
 #include "Explica/Core/TriangleMesh.h"
 
+#include <nlohmann/json.hpp>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -16,10 +18,10 @@ namespace explica::report {
 [[nodiscard]] std::string deflated(std::string_view bytes);
 
 /// Integers for the page's script: differences to the value `stride` before (0: the values
-/// themselves), signs folded into the lowest bit, bytes of equal weight together, deflated, base64;
-/// as a JSON object
+/// themselves), signs folded into the lowest bit, bytes of equal weight together, deflated, base64:
 /// {"n": count, "s": stride, "p": planes, "d": "..."}.
-[[nodiscard]] std::string packIntegers(const std::vector<std::int32_t>& values, int stride);
+[[nodiscard]] nlohmann::ordered_json packIntegers(const std::vector<std::int32_t>& values,
+                                                  int stride);
 
 /// Corners of the faces, each face turned to begin with its least and all in ascending order, which
 /// deflates a quarter better.

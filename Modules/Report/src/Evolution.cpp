@@ -15,11 +15,9 @@
 namespace explica::report {
 namespace {
 
-constexpr double kSteps = 8191;  // of the box along each axis: 0.03 mm of a brain
+using Json = nlohmann::ordered_json;
 
-std::string exactly(double value) {
-  return nlohmann::json(value).dump();
-}
+constexpr double kSteps = 8191;  // of the box along each axis: 0.03 mm of a brain
 
 /// The colours of a legend or scale, three bytes each.
 std::string packColours(const std::vector<Colour>& colours) {
@@ -32,7 +30,7 @@ std::string packColours(const std::vector<Colour>& colours) {
 
 /// Values to 1/65534 of their own range, so that the one under the pointer can be read; 65535 is
 /// not-a-number.
-std::string mapJson(const EvolutionMap& map) {
+Json mapJson(const EvolutionMap& map) {
   constexpr int kLevels = 65534;
   double least = kInfinity, most = -kInfinity;
   for (const double v : map.values) {
@@ -54,24 +52,27 @@ std::string mapJson(const EvolutionMap& map) {
   for (int e = 0; e < 256; ++e) {
     colours.push_back(colourAt(map.scale.map, e == 255 ? kNaN : e / 254.0));
   }
-  return "{\"name\":" + nlohmann::json(map.scale.title).dump() +
-         ",\"unit\":" + nlohmann::json(map.scale.unit).dump() +
-         ",\"low\":" + exactly(map.scale.low) + ",\"high\":" + exactly(map.scale.high) +
-         ",\"least\":" + exactly(least) + ",\"step\":" + exactly((most - least) / kLevels) +
-         ",\"colours\":\"" + packColours(colours) + "\",\"values\":" + packIntegers(values, 1) +
-         "}";
+  return {{"name", map.scale.title},
+          {"unit", map.scale.unit},
+          {"low", map.scale.low},
+          {"high", map.scale.high},
+          {"least", least},
+          {"step", (most - least) / kLevels},
+          {"colours", packColours(colours)},
+          {"values", packIntegers(values, 1)}};
 }
 
-std::string labelsJson(const EvolutionLabels& labels) {
+Json labelsJson(const EvolutionLabels& labels) {
   std::vector<std::string> names;
   std::vector<Colour> colours;
   for (const LegendEntry& entry : labels.legend) {
     names.push_back(entry.name);
     colours.push_back(entry.colour);
   }
-  return "{\"name\":" + nlohmann::json(labels.title).dump() +
-         ",\"names\":" + nlohmann::json(names).dump() + ",\"colours\":\"" + packColours(colours) +
-         "\",\"entries\":" + packIntegers(labels.entries, 1) + "}";
+  return {{"name", labels.title},
+          {"names", names},
+          {"colours", packColours(colours)},
+          {"entries", packIntegers(labels.entries, 1)}};
 }
 
 }  // namespace
@@ -120,62 +121,53 @@ std::string evolutionJson(const Evolution& evolution) {
   for (Eigen::Index v = 0; v < mesh.vertexCount(); ++v) {
     for (int c = 0; c < 3; ++c) positions.push_back(quantise(mesh.positions(v, c), c));
   }
-  const std::vector<std::int32_t> faces = facesInOrder(mesh.faces);
   const SurfaceScene scene(mesh);
   std::vector<std::int32_t> openness;
-  for (const float open : scene.openness())
+  for (const float open : scene.openness()) {
     openness.push_back(static_cast<std::int32_t>(std::lround(255 * open)));
+  }
 
-  std::string json = "{\"low\":[" + exactly(low.x()) + "," + exactly(low.y()) + "," +
-                     exactly(low.z()) + "],\"unit\":" + exactly(unit);
-  json += ",\"positions\":" + packIntegers(positions, 3);
-  json += ",\"faces\":" + packIntegers(faces, 3);
-  json += ",\"openness\":" + packIntegers(openness, 1);
-  json += ",\"moved\":" + packIntegers(evolution.moved, 1);
-  json += ",\"frames\":[";
+  Json frames = Json::array(), shapes = frames, maps = frames, labels = frames;
   std::vector<std::int32_t> before;
   for (const std::int32_t v : evolution.moved) {
     for (int c = 0; c < 3; ++c) before.push_back(positions[3 * static_cast<std::size_t>(v) + c]);
   }
-  for (std::size_t f = 0; f < evolution.frames.size(); ++f) {
+  for (const Positions& frame : evolution.frames) {
     std::vector<std::int32_t> change(before.size());
     for (std::size_t i = 0; i < before.size(); ++i) {
       const int axis = static_cast<int>(i % 3);
-      const std::int32_t now =
-          quantise(evolution.frames[f](static_cast<Eigen::Index>(i / 3), axis), axis);
+      const std::int32_t now = quantise(frame(static_cast<Eigen::Index>(i / 3), axis), axis);
       change[i] = now - before[i];
       before[i] = now;
     }
-    json += (f == 0 ? "" : ",") + packIntegers(change, 0);
+    frames.push_back(packIntegers(change, 0));
   }
-  json += "],\"titles\":" + nlohmann::json(evolution.frameTitles).dump();
-  json += ",\"region\":" +
-          packIntegers(evolution.region.empty() ? evolution.moved : evolution.region, 1);
-  json += ",\"shapes\":[";
   for (const EvolutionShape& shape : evolution.shapes) {
     std::vector<std::int32_t> shift;
     for (Eigen::Index i = 0; i < shape.positions.size(); ++i) {
       const int axis = static_cast<int>(i % 3);
       shift.push_back(quantise(shape.positions(i / 3, axis), axis) - positions[i]);
     }
-    json += (&shape == evolution.shapes.data() ? "" : ",") + std::string("{\"name\":") +
-            nlohmann::json(shape.name).dump() + ",\"shift\":" + packIntegers(shift, 3) + "}";
+    shapes.push_back({{"name", shape.name}, {"shift", packIntegers(shift, 3)}});
   }
-  json += std::string("],\"detached\":") + (evolution.detached ? "true" : "false");
-  json += ",\"maps\":[";
-  for (std::size_t m = 0; m < evolution.maps.size(); ++m) {
-    json += (m == 0 ? "" : ",") + mapJson(evolution.maps[m]);
-  }
-  json += "],\"labels\":[";
-  for (std::size_t m = 0; m < evolution.labels.size(); ++m) {
-    json += (m == 0 ? "" : ",") + labelsJson(evolution.labels[m]);
-  }
-  json += "]";
-  if (evolution.viewpoint) {
-    const Point& p = *evolution.viewpoint;
-    json += ",\"viewpoint\":[" + exactly(p.x()) + "," + exactly(p.y()) + "," + exactly(p.z()) + "]";
-  }
-  return json + "}";
+  for (const EvolutionMap& map : evolution.maps) maps.push_back(mapJson(map));
+  for (const EvolutionLabels& map : evolution.labels) labels.push_back(labelsJson(map));
+  Json json = {
+      {"low", {low.x(), low.y(), low.z()}},
+      {"unit", unit},
+      {"positions", packIntegers(positions, 3)},
+      {"faces", packIntegers(facesInOrder(mesh.faces), 3)},
+      {"openness", packIntegers(openness, 1)},
+      {"moved", packIntegers(evolution.moved, 1)},
+      {"frames", frames},
+      {"titles", evolution.frameTitles},
+      {"region", packIntegers(evolution.region.empty() ? evolution.moved : evolution.region, 1)},
+      {"shapes", shapes},
+      {"detached", evolution.detached},
+      {"maps", maps},
+      {"labels", labels}};
+  if (const auto& at = evolution.viewpoint) json["viewpoint"] = {at->x(), at->y(), at->z()};
+  return json.dump();
 }
 
 }  // namespace explica::report

@@ -3,6 +3,7 @@
 #include "Explica/Report/Figure.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Report/Canvas.h"
 #include "Explica/Report/Mosaic.h"
 
@@ -67,16 +68,10 @@ std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCoun
 }
 
 Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int height) {
-  TriangleMesh seen;
-  if (!view.focus.empty()) {
-    seen.positions.resize(static_cast<Eigen::Index>(view.focus.size()), 3);
-    for (std::size_t v = 0; v < view.focus.size(); ++v) {
-      seen.positions.row(v) = mesh.positions.row(view.focus[v]);
-    }
-  }
-  const TriangleMesh& shown = view.focus.empty() ? mesh : seen;
-  Camera camera = view.name ? cameraFor(shown, *view.name, width, height)
-                            : cameraTowards(shown, view.towards, view.up, width, height);
+  const Positions seen =
+      view.focus.empty() ? mesh.positions : Positions(mesh.positions(view.focus, Eigen::all));
+  Camera camera = view.name ? cameraFor(seen, *view.name, width, height)
+                            : cameraTowards(seen, view.towards, view.up, width, height);
   if (!view.focus.empty()) camera.halfHeight *= 1.3;
   return camera;
 }
@@ -121,9 +116,7 @@ Picture withColourBar(Picture tiled, const SurfacePaint& paint) {
 Eigen::AlignedBox3d boxAbove(const Volume<float>& image, double threshold) {
   Eigen::AlignedBox3d box;
   for (std::size_t v = 0; v < image.size(); ++v) {
-    if (!(image[v] > threshold)) continue;
-    const auto [i, j, k] = image.grid.subscripts(v);
-    box.extend(image.grid.toWorld(Vector(i, j, k)));
+    if (image[v] > threshold) box.extend(centreOf(image.grid, v));
   }
   return box;
 }

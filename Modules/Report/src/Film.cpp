@@ -14,9 +14,8 @@ namespace {
 constexpr double kLetters = 0.026;  // height of the caption's capitals, of the picture's
 constexpr int kCaptionRows = 3;     // height of the caption's strip, in capitals
 
-/// All places of the focus, as a mesh that a camera can be fitted to.
-TriangleMesh placesOf(const std::vector<FilmFrame>& frames,
-                      const std::vector<std::int32_t>& focus) {
+/// All places of the focus.
+Positions placesOf(const std::vector<FilmFrame>& frames, const std::vector<std::int32_t>& focus) {
   const Positions& first = frames.front().mesh.positions;
   std::vector<std::int32_t> shown = focus;
   if (focus.empty()) {
@@ -30,12 +29,8 @@ TriangleMesh placesOf(const std::vector<FilmFrame>& frames,
       if (&frame == &frames.front() || place != first.row(v)) places.emplace_back(place);
     }
   }
-  TriangleMesh all;
-  all.positions.resize(static_cast<Eigen::Index>(places.size()), 3);
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    all.positions.row(n) = places[n].transpose();
-  }
-  return all;
+  return Eigen::Map<const Positions>(places.front().data(),
+                                     static_cast<Eigen::Index>(places.size()), 3);
 }
 
 /// Of each vertex whether it is ever elsewhere than in the first frame.

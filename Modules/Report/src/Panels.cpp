@@ -21,7 +21,7 @@ double commonHalfHeight(const std::vector<std::vector<Panel>>& rows, int width, 
   for (const auto& row : rows) {
     for (const Panel& panel : row) {
       if (panel.marks) continue;
-      half = std::max(half, cameraFor(*panel.mesh, panel.view, width, height).halfHeight);
+      half = std::max(half, cameraFor(panel.mesh->positions, panel.view, width, height).halfHeight);
     }
   }
   return half;
@@ -58,7 +58,7 @@ void drawPanel(Canvas& canvas, Scenes& scenes, const Panel& panel, const Cell& c
     canvas.add(flat, corner);
   } else {
     SurfacePictureOptions size{.width = cell.width, .height = cell.height};
-    Camera camera = cameraFor(*panel.mesh, panel.view, cell.width, cell.height);
+    Camera camera = cameraFor(panel.mesh->positions, panel.view, cell.width, cell.height);
     camera.halfHeight = halfHeight;
     const SurfaceScene& scene = scenes.try_emplace(panel.mesh, *panel.mesh).first->second;
     const bool discrete = panel.paint.values.size() == 0 && panel.paint.labels.size() != 0;

@@ -3,6 +3,7 @@
 #include "Explica/Report/SlicePicture.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Report/Drawing.h"
 
 #include <algorithm>
@@ -215,12 +216,9 @@ std::array<char, 4> directionLetters(const SliceFrame& frame) {
 Picture renderLabelSlice(const Volume<Label>& labels, const SliceFrame& frame) {
   const PlaneAxes axes = axesOf(frame);
   return drawn(frame.width, frame.height, [&](double x, double y) -> std::optional<Colour> {
-    const Vector index = labels.grid.toIndex(worldOf(frame, axes, x, y));
-    const int i = static_cast<int>(std::lround(index.x()));
-    const int j = static_cast<int>(std::lround(index.y()));
-    const int k = static_cast<int>(std::lround(index.z()));
-    if (!labels.grid.contains(i, j, k) || labels(i, j, k) == 0) return {};
-    return colourOfLabel(labels(i, j, k));
+    const std::int64_t voxel = voxelAt(labels.grid, worldOf(frame, axes, x, y));
+    if (voxel < 0 || labels[voxel] == 0) return {};
+    return colourOfLabel(labels[voxel]);
   });
 }
 

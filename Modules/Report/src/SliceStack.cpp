@@ -83,11 +83,9 @@ std::string sliceStackJson(const Volume<float>& image, const std::vector<MosaicO
                                {"surfaces", surfaces},
                                {"leftOnRight", options.convention == SideConvention::Radiological},
                                {"places", listed}};
-  std::string json = head.dump();
-  json.back() = ',';
-  return json +
-         "\"grey\":" + packIntegers(greyOf(image, lattice, greyScale(image, options.subject)), 1) +
-         "}";
+  nlohmann::ordered_json json = head;
+  json["grey"] = packIntegers(greyOf(image, lattice, greyScale(image, options.subject)), 1);
+  return json.dump();
 }
 
 }  // namespace explica::report

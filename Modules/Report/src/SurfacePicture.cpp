@@ -443,7 +443,7 @@ Picture SurfaceScene::render(const Camera& camera, const std::vector<Colour>& co
   return picture;
 }
 
-Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards, const Vector& up, int width,
+Camera cameraTowards(const Positions& places, const Vector& towards, const Vector& up, int width,
                      int height) {
   if (!(towards.norm() > 0)) throw InvalidInput("direction: must not be zero");
   Camera camera;
@@ -455,9 +455,9 @@ Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards, const Vect
   }
   sideways.normalize();
   camera.up = sideways.cross(camera.towards);
-  const Eigen::VectorXd x = mesh.positions * sideways;
-  const Eigen::VectorXd y = mesh.positions * camera.up;
-  const Eigen::VectorXd z = mesh.positions * camera.towards;
+  const Eigen::VectorXd x = places * sideways;
+  const Eigen::VectorXd y = places * camera.up;
+  const Eigen::VectorXd z = places * camera.towards;
   camera.target = 0.5 * (x.minCoeff() + x.maxCoeff()) * sideways +
                   0.5 * (y.minCoeff() + y.maxCoeff()) * camera.up +
                   0.5 * (z.minCoeff() + z.maxCoeff()) * camera.towards;
@@ -467,7 +467,7 @@ Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards, const Vect
   return camera;
 }
 
-Camera cameraFor(const TriangleMesh& mesh, ViewName view, int width, int height) {
+Camera cameraFor(const Positions& places, ViewName view, int width, int height) {
   const Vector superior(0, 0, 1), anterior(0, 1, 0);
   const std::array<std::array<Vector, 2>, 6> sights = {{{Vector(1, 0, 0), superior},
                                                         {Vector(-1, 0, 0), superior},
@@ -476,7 +476,7 @@ Camera cameraFor(const TriangleMesh& mesh, ViewName view, int width, int height)
                                                         {Vector(0, 0, -1), anterior},
                                                         {Vector(0, 0, 1), anterior}}};
   const auto& [towards, up] = sights[static_cast<std::size_t>(view)];
-  return cameraTowards(mesh, towards, up, width, height);
+  return cameraTowards(places, towards, up, width, height);
 }
 
 }  // namespace explica::report

@@ -41,8 +41,8 @@ TEST(SurfacePicture, ARegionsColourEndsAtTheEdgesOfItsFaces) {
   options.height = 60;
   options.occlusion = 0;
   options.samples = 1;
-  const Camera camera =
-      cameraTowards(mesh, Vector(-1, 0, 0), Vector(0, 0, 1), options.width, options.height);
+  const Camera camera = cameraTowards(mesh.positions, Vector(-1, 0, 0), Vector(0, 0, 1),
+                                      options.width, options.height);
   const SurfaceScene scene(mesh);
   for (const Filling filling : {Filling::Smooth, Filling::Discrete}) {
     const Picture picture = scene.render(camera, colours, filling, options, keys);
@@ -63,8 +63,8 @@ TEST(SurfacePicture, ARegionsColourEndsAtTheEdgesOfItsFaces) {
 TEST(SurfacePicture, SphereFillsItsDisc) {
   const TriangleMesh sphere = geometry::makeIcosphere(4, 50);
   const SurfaceScene scene(sphere);
-  const Picture p =
-      scene.render(cameraFor(sphere, ViewName::Left, 200, 160), {}, Filling::Smooth, small());
+  const Picture p = scene.render(cameraFor(sphere.positions, ViewName::Left, 200, 160), {},
+                                 Filling::Smooth, small());
   int covered = 0;
   for (int y = 0; y < 160; ++y) {
     for (int x = 0; x < 200; ++x) covered += !isWhite(p, x, y);
@@ -81,19 +81,19 @@ TEST(SurfacePicture, ViewsShowTheSidesTheyAreNamedAfter) {
   }
   const SurfaceScene scene(sphere);
   const auto middle = [&](ViewName view) {
-    const Picture p =
-        scene.render(cameraFor(sphere, view, 200, 160), colours, Filling::Smooth, small());
+    const Picture p = scene.render(cameraFor(sphere.positions, view, 200, 160), colours,
+                                   Filling::Smooth, small());
     return std::array<int, 2>{p.pixel(100, 80)[0], p.pixel(100, 80)[2]};
   };
   EXPECT_GT(middle(ViewName::Left)[0], middle(ViewName::Left)[1]);
   EXPECT_GT(middle(ViewName::Right)[1], middle(ViewName::Right)[0]);
   // From the front, the patient's right is on the picture's left.
-  const Picture front =
-      scene.render(cameraFor(sphere, ViewName::Front, 200, 160), colours, Filling::Smooth, small());
+  const Picture front = scene.render(cameraFor(sphere.positions, ViewName::Front, 200, 160),
+                                     colours, Filling::Smooth, small());
   EXPECT_GT(front.pixel(70, 80)[2], front.pixel(70, 80)[0]);
   // From above with the nose up, the patient's left is on the left.
-  const Picture top =
-      scene.render(cameraFor(sphere, ViewName::Top, 200, 160), colours, Filling::Smooth, small());
+  const Picture top = scene.render(cameraFor(sphere.positions, ViewName::Top, 200, 160), colours,
+                                   Filling::Smooth, small());
   EXPECT_GT(top.pixel(70, 80)[0], top.pixel(70, 80)[2]);
 }
 
@@ -129,7 +129,7 @@ TEST(SurfacePicture, WhatHasMovedIsDrawnAsASurfaceByItself) {
   }
   SurfaceScene scene(folded, moves);
   const SurfaceScene first(folded), fresh(moved);
-  const Camera camera = cameraFor(folded, ViewName::Top, 200, 160);
+  const Camera camera = cameraFor(folded.positions, ViewName::Top, 200, 160);
   const auto picture = [&](const SurfaceScene& of) {
     return of.render(camera, {}, Filling::Smooth, small(), {moves.begin(), moves.end()}).rgb;
   };
@@ -151,8 +151,8 @@ TEST(SurfacePicture, DoesNotDependOnThreads) {
   const auto picture = [&](int threads) {
     setThreadCount(threads);
     const SurfaceScene scene(folded);
-    const Picture p =
-        scene.render(cameraFor(folded, ViewName::Top, 200, 160), {}, Filling::Smooth, small());
+    const Picture p = scene.render(cameraFor(folded.positions, ViewName::Top, 200, 160), {},
+                                   Filling::Smooth, small());
     setThreadCount(0);
     return p.rgb;
   };
@@ -162,9 +162,9 @@ TEST(SurfacePicture, DoesNotDependOnThreads) {
 TEST(SurfacePicture, RefusesColoursOfAnotherSurface) {
   const TriangleMesh sphere = geometry::makeIcosphere(1);
   const SurfaceScene scene(sphere);
-  EXPECT_THROW(
-      (void)scene.render(cameraFor(sphere, ViewName::Left, 10, 10), std::vector<Colour>(3)),
-      InvalidInput);
+  EXPECT_THROW((void)scene.render(cameraFor(sphere.positions, ViewName::Left, 10, 10),
+                                  std::vector<Colour>(3)),
+               InvalidInput);
   EXPECT_THROW(SurfaceScene(TriangleMesh{}), InvalidInput);
 }
 
@@ -212,7 +212,7 @@ TEST(SurfacePicture, ADarkLineRunsBetweenKeys) {
   for (Eigen::Index v = 0; v < sphere.vertexCount(); ++v) {
     keys.push_back(sphere.positions(v, 2) > 0 ? 1 : 0);
   }
-  const Camera camera = cameraFor(sphere, ViewName::Left, 200, 160);
+  const Camera camera = cameraFor(sphere.positions, ViewName::Left, 200, 160);
   const Picture plain = scene.render(camera, {}, Filling::Smooth, small());
   const Picture lined = scene.render(camera, {}, Filling::Smooth, small(), keys);
   int darker = 0, rows = 0;

@@ -18,8 +18,7 @@ constexpr std::size_t kChunk = 64;        // points that follow each other, writ
 constexpr std::size_t kChunksATask = 16;  // taken by one thread
 constexpr std::size_t kPointGrain = kChunk * kChunksATask;  // points a task
 constexpr std::size_t kVoxelGrain = 1 << 15;                // elements a task
-// Outside of the volume or mask.
-constexpr float kNotKnown = std::numeric_limits<float>::quiet_NaN();
+constexpr auto kNotKnown = static_cast<float>(kNaN);        // outside of the volume or mask
 
 /// Frames voxel by voxel, and which voxels are known in each of them.
 struct Block {

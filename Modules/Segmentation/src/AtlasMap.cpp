@@ -81,8 +81,7 @@ VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend, const Volume<L
   for (std::size_t v = 0; v < atlas.size(); ++v) {
     if (map.kind[v] != kindCode(StructureKind::Deep)) continue;
     if (legend.at(atlas[v]).name.compare(0, 8, "Thalamus") != 0) continue;
-    const auto [i, j, k] = grid.subscripts(v);
-    heights.push_back(grid.toWorld(Vector(i, j, k)).z());
+    heights.push_back(centreOf(grid, v).z());
   }
   VoxelSet stem(grid, 0);
   if (heights.empty()) return stem;

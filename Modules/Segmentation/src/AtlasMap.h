@@ -42,17 +42,6 @@ inline bool isVentricle(const std::string& name) {
 [[nodiscard]] VoxelSet findStem(const AtlasMap& map, const AtlasLegend& legend,
                                 const Volume<Label>& atlas);
 
-template <class Test>
-VoxelSet setWhere(const Grid& grid, const Test& test) {
-  VoxelSet set(grid, 0);
-  parallelFor(set.size(), 65536, [&](std::size_t v) { set[v] = test(v) ? 1 : 0; });
-  return set;
-}
-
-inline std::int64_t voxelsIn(const VoxelSet& set) {
-  return std::count_if(set.data.begin(), set.data.end(), [](std::uint8_t v) { return v != 0; });
-}
-
 /// Visits the voxels that share a face with one.
 template <class Visit>
 void forNeighbours(const Grid& grid, std::size_t v, const Visit& visit) {

@@ -36,9 +36,8 @@ void measurePieces(const VoxelSet& differs, Disagreement& found) {
   const Components pieces = componentsOf(differs);
   if (pieces.largest() < 0) return;
   found.largest = static_cast<double>(pieces.size[pieces.largest()]) * grid.voxelVolume();
-  VoxelSet same(grid, 0);
-  for (std::size_t v = 0; v < same.size(); ++v) same[v] = differs[v] == 0 ? 1 : 0;
-  const Volume<float> squared = squaredDistanceTo(same);
+  const Volume<float> squared =
+      squaredDistanceTo(setWhere(grid, [&](std::size_t v) { return differs[v] == 0; }));
   std::vector<float> inside(pieces.size.size(), 0);
   for (std::size_t v = 0; v < differs.size(); ++v) {
     if (differs[v] == 0) continue;
@@ -46,8 +45,7 @@ void measurePieces(const VoxelSet& differs, Disagreement& found) {
     most = std::max(most, squared[v]);
     if (!(std::sqrt(squared[v]) > found.deepest)) continue;
     found.deepest = std::sqrt(squared[v]);
-    const auto [i, j, k] = grid.subscripts(v);
-    found.middle = grid.toWorld(Vector(i, j, k));
+    found.middle = centreOf(grid, v);
   }
   for (std::size_t n = 0; n < inside.size(); ++n) {
     if (inside[n] >= kLeastRadius * kLeastRadius) found.voxels += pieces.size[n];
@@ -63,9 +61,8 @@ Disagreement whiteDisagreement(const Volume<Label>& tissues, const Volume<float>
     throw InvalidInput("template: lies on another grid than the tissues");
   }
   const double level = whiteLevel(tissues, expected);
-  VoxelSet other(grid, 0);
-  for (std::size_t v = 0; v < other.size(); ++v) other[v] = expected[v] > level ? 0 : 1;
-  const Volume<float> squared = squaredDistanceTo(other);
+  const Volume<float> squared =
+      squaredDistanceTo(setWhere(grid, [&](std::size_t v) { return !(expected[v] > level); }));
   VoxelSet differs(grid, 0);
   double deep = 0, different = 0;
   for (std::size_t v = 0; v < differs.size(); ++v) {

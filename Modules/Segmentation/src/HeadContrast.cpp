@@ -57,14 +57,11 @@ float meanAbove(const Volume<float>& image, float least) {
 /// The dark that is connected with the grid's corner.
 VoxelSet airOf(const Volume<float>& blocks) {
   const float tissue = kTissue * meanAbove(blocks, meanAbove(blocks, -kInfinity));
-  VoxelSet dark(blocks.grid, 0);
-  for (std::size_t v = 0; v < dark.size(); ++v) dark[v] = blocks[v] > tissue ? 0 : 1;
-  const Components parts = componentsOf(dark);
-  VoxelSet air(blocks.grid, 0);
-  for (std::size_t v = 0; v < air.size(); ++v) {
-    air[v] = parts.number[v] >= 0 && parts.number[v] == parts.number[0] ? 1 : 0;
-  }
-  return air;
+  const Components parts =
+      componentsOf(setWhere(blocks.grid, [&](std::size_t v) { return !(blocks[v] > tissue); }));
+  return setWhere(blocks.grid, [&](std::size_t v) {
+    return parts.number[v] >= 0 && parts.number[v] == parts.number[0];
+  });
 }
 
 /// Divides by the exponential of the plane that fits the logarithms best: a coil on one side of the

@@ -186,12 +186,8 @@ Volume<std::uint8_t> maskOf(const Volume<Label>& labels, Label label) {
 Volume<Label> resampleLabels(const Volume<Label>& labels, const Grid& grid) {
   Volume<Label> resampled(grid, 0);
   for (std::size_t v = 0; v < resampled.size(); ++v) {
-    const auto [i, j, k] = grid.subscripts(v);
-    const Vector at = labels.grid.toIndex(grid.toWorld(Vector(i, j, k)));
-    const int si = static_cast<int>(std::lround(at.x()));
-    const int sj = static_cast<int>(std::lround(at.y()));
-    const int sk = static_cast<int>(std::lround(at.z()));
-    if (labels.grid.contains(si, sj, sk)) resampled[v] = labels(si, sj, sk);
+    const std::int64_t from = voxelAt(labels.grid, centreOf(grid, v));
+    if (from >= 0) resampled[v] = labels[from];
   }
   return resampled;
 }

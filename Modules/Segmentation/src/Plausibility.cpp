@@ -227,15 +227,14 @@ double brighterThanWhite(const Volume<float>& intensity, const TissueSegmentatio
 }
 
 double rimContrast(const Volume<Label>& tissues) {
-  VoxelSet outside(tissues.grid, 0);
   std::array<double, 4> all{};
   for (std::size_t v = 0; v < tissues.size(); ++v) {
-    outside[v] = tissues[v] == 0 ? 1 : 0;
     if (tissues[v] >= kCsf && tissues[v] <= kWhite) ++all[tissues[v]];
   }
   const double brain = all[kCsf] + all[kGrey] + all[kWhite];
   const double radius = std::cbrt(0.75 / kPi * brain * tissues.grid.voxelVolume());
-  const Volume<float> squared = squaredDistanceTo(outside);
+  const Volume<float> squared =
+      squaredDistanceTo(setWhere(tissues.grid, [&](std::size_t v) { return tissues[v] == 0; }));
   const double most = std::max(kRim * radius, 1.01 * tissues.grid.spacing.minCoeff());
   std::array<double, 4> rim{};
   for (std::size_t v = 0; v < tissues.size(); ++v) {

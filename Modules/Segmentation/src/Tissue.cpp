@@ -344,22 +344,9 @@ void expect(const Brain& brain, const std::vector<float>& corrected, const Mixtu
   });
 }
 
-/// Sums of the maximisation step.
-struct Moments {
-  std::array<double, kComponents> weight{};
-  std::array<double, kClasses> pure{};
-  std::array<double, kClasses> first{};
-  std::array<double, kClasses> second{};
-  Moments& operator+=(const Moments& other) {
-    for (int c = 0; c < kComponents; ++c) weight[c] += other.weight[c];
-    for (int k = 0; k < kClasses; ++k) {
-      pure[k] += other.pure[k];
-      first[k] += other.first[k];
-      second[k] += other.second[k];
-    }
-    return *this;
-  }
-};
+/// Sums of the maximisation step, for each component.
+enum Moment { kWeight, kPure, kFirst, kSecond, kMoments };
+using Moments = Eigen::Array<double, kMoments, kComponents>;
 
 /// Deviation of the noise, by the median of second differences along the axes: borders are few.
 double noiseOf(const Brain& brain) {
@@ -379,30 +366,29 @@ double noiseOf(const Brain& brain) {
 
 Mixture maximise(const Brain& brain, const std::vector<float>& corrected,
                  const std::vector<Posterior>& posterior) {
+  const Moments none = Moments::Zero();
   const Moments sums =
-      parallelSum(corrected.size(), kGrain, Moments{}, [&](std::size_t begin, std::size_t end) {
-        Moments part;
+      parallelSum(corrected.size(), kGrain, none, [&](std::size_t begin, std::size_t end) {
+        Moments part = none;
         for (std::size_t b = begin; b < end; ++b) {
           const double y = corrected[b];
-          for (int c = 0; c < kComponents; ++c) part.weight[c] += posterior[b][c];
+          for (int c = 0; c < kComponents; ++c) part(kWeight, c) += posterior[b][c];
           for (int k = brain.rim[b]; k < kClasses; ++k) {  // fluid not from the rim
-            part.pure[k] += posterior[b][k];
-            part.first[k] += posterior[b][k] * y;
-            part.second[k] += posterior[b][k] * y * y;
+            part(kPure, k) += posterior[b][k];
+            part(kFirst, k) += posterior[b][k] * y;
+            part(kSecond, k) += posterior[b][k] * y * y;
           }
         }
         return part;
       });
   Mixture mixture;
-  for (int k = 0; k < kClasses; ++k) {
-    mixture.mean[k] = sums.first[k] / sums.pure[k];
-  }
+  for (int k = 0; k < kClasses; ++k) mixture.mean[k] = sums(kFirst, k) / sums(kPure, k);
   for (int c = 0; c < kComponents; ++c) {
-    mixture.share[c] = sums.weight[c] / static_cast<double>(corrected.size());
+    mixture.share[c] = sums(kWeight, c) / static_cast<double>(corrected.size());
   }
   const double range = mixture.mean[2] - mixture.mean[0];
   for (int k = 0; k < kClasses; ++k) {
-    const double variance = sums.second[k] / sums.pure[k] - mixture.mean[k] * mixture.mean[k];
+    const double variance = sums(kSecond, k) / sums(kPure, k) - mixture.mean[k] * mixture.mean[k];
     mixture.deviation[k] = std::clamp(std::sqrt(std::max(0.0, variance)), kLeastDeviation * range,
                                       kMostDeviation * range);
   }

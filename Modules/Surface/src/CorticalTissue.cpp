@@ -278,7 +278,7 @@ Volume<float> addShares(const Volume<float>& a, const Volume<float>& b) {
 bool runsOutOfImage(const TissueMasks& masks) {
   constexpr double kShare = 0.01;  // of grey voxels; a closely cropped brain has less on the edge
   return static_cast<double>(countOnEdge(masks.grey)) >
-         kShare * static_cast<double>(countIn(masks.grey));
+         kShare * static_cast<double>(voxelsIn(masks.grey));
 }
 
 bool isBlock(const TissueMasks& masks) {
@@ -308,7 +308,7 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   masks.white = maskOf(labels, roles.white);
   masks.grey = maskOf(labels, roles.grey);
   masks.insulated = maskOf(labels, roles.insulated);
-  masks.whiteVoxels = countIn(masks.white);
+  masks.whiteVoxels = voxelsIn(masks.white);
   const Mask filled = maskOf(labels, roles.fill);
   masks.filledVoxels =
       countWhere(filled.size(), [&](std::size_t v) { return filled[v] && !masks.white[v]; });
@@ -324,11 +324,11 @@ TissueMasks masksFromLabels(const Volume<Label>& labels, const TissueOptions& op
   } else if (!roles.sided && !options.hemisphere) {
     warnOfTwoHemispheres(masks.white, monitor);
   }
-  if (countIn(masks.white) == 0) {
+  if (voxelsIn(masks.white) == 0) {
     throw InvalidInput("white: no voxel left after separation (labelled white: " +
                        std::to_string(masks.whiteVoxels) + " voxels)");
   }
-  masks.greyVoxels = countIn(masks.grey);
+  masks.greyVoxels = voxelsIn(masks.grey);
   masks.atImageBorder = countOnEdge(masks.white) + countOnEdge(masks.grey);
   parallelFor(masks.white.size(), kVoxelGrain, [&](std::size_t v) {
     if (masks.white[v] || masks.grey[v]) masks.insulated[v] = 0;
@@ -410,8 +410,8 @@ CorticalTissue tissueFromShares(const Volume<float>& white, const Volume<float>&
     if (insulated.size() > 0) neither[v] = insulated[v] != 0 && !all[v];
   }
   CorticalTissue result;
-  result.whiteVoxels = countIn(inner);
-  result.greyVoxels = countIn(all) - result.whiteVoxels;
+  result.whiteVoxels = voxelsIn(inner);
+  result.greyVoxels = voxelsIn(all) - result.whiteVoxels;
   if (result.whiteVoxels == 0) throw InvalidInput("white: no share reaches 0.5");
 
   Volume<float> own = white, both = hasTissue ? tissue : white;

@@ -63,8 +63,7 @@ double stallOf(const geometry::FaceTree& white, std::int32_t face, double voxel,
 
 void takePaths(const TriangleMesh& white, const RibbonPaths& ribbon, GrowingColumns& columns) {
   const LevelSet& tissue = columns.tissue.tissue;
-  constexpr double kOff = 0.125;  // voxels: so far outward tissue begins, or there is none
-  const double voxel = voxelSize(tissue.grid), off = kOff * voxel;
+  const double voxel = voxelSize(tissue.grid), off = kStartOff * voxel;
   const Positions normals = geometry::vertexNormals(white);
   const std::vector<std::int32_t> faceAt = geometry::faceOfEachVertex(white);
   const geometry::FaceTree tree(white);

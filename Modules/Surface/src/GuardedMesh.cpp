@@ -3,6 +3,7 @@
 
 #include "GuardedMesh.h"
 
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/Predicates.h"
 #include "Explica/Geometry/TriangleIntersection.h"
 
@@ -130,6 +131,32 @@ std::array<std::int32_t, 2> GuardedMesh::rimNeighbours(std::int32_t v) const {
   return found;
 }
 
+GuardedMesh::Ring GuardedMesh::ringOf(std::int32_t v) const {
+  Ring ring;
+  double weight = 0;
+  for (const std::int32_t f : vertexFaces_[v]) {
+    const Corners& c = faces_[f];
+    const Vector normal = normalOf(f);
+    const double area = normal.norm();
+    const Point sum = positions_[c[0]] + positions_[c[1]] + positions_[c[2]];
+    ring.centre += area / 3 * sum;
+    ring.mean += sum - positions_[v];
+    ring.normal += normal;
+    weight += area;
+  }
+  // Each neighbour is a corner of two faces.
+  ring.mean /= 2 * static_cast<double>(valence(v));
+  ring.centre = weight > 0 ? Point(ring.centre / weight) : positions_[v];
+  const double length = ring.normal.norm();
+  ring.normal = length > 0 ? Vector(ring.normal / length) : Vector(Vector::Zero());
+  return ring;
+}
+
+Point GuardedMesh::alongRim(std::int32_t v) const {
+  const auto [before, after] = rimNeighbours(v);
+  return 0.5 * positions_[v] + 0.25 * (positions_[before] + positions_[after]);
+}
+
 GuardedMesh::Placed GuardedMesh::place(const Corners& corners, std::int32_t moved,
                                        const Point& to) const {
   Placed placed;
@@ -235,24 +262,8 @@ bool GuardedMesh::admissible(std::span<const Placed> made, std::span<const std::
 }
 
 TriangleMesh GuardedMesh::toMesh() const {
-  TriangleMesh mesh;
-  std::vector<std::int32_t> number(positions_.size(), -1);
-  std::int32_t vertices = 0;
-  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
-    if (hasVertex(v)) number[v] = vertices++;
-  }
-  mesh.positions.resize(vertices, 3);
-  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
-    if (number[v] >= 0) mesh.positions.row(number[v]) = positions_[v];
-  }
-  mesh.faces.resize(faceCount(), 3);
-  Eigen::Index row = 0;
-  for (const Corners& c : faces_) {
-    if (c[0] < 0) continue;
-    for (int k = 0; k < 3; ++k) mesh.faces(row, k) = number[c[k]];
-    ++row;
-  }
-  return mesh;
+  const TriangleMesh mesh = withAllSlots();
+  return geometry::extractFaces(mesh, mesh.allFaces()).mesh;
 }
 
 }  // namespace explica::surface

@@ -75,6 +75,16 @@ class GuardedMesh {
   /// The vertices before and after v on the rim; -1 if it does not lie there.
   [[nodiscard]] std::array<std::int32_t, 2> rimNeighbours(std::int32_t v) const;
 
+  /// A vertex among its neighbours.
+  struct Ring {
+    Point centre = Point::Zero();    ///< area-weighted mean of the faces' centroids
+    Point mean = Point::Zero();      ///< of the neighbours
+    Vector normal = Vector::Zero();  ///< area-weighted, of unit length; zero if there is none
+  };
+  [[nodiscard]] Ring ringOf(std::int32_t v) const;
+  /// Half way from a vertex of the rim to the middle of its neighbours there.
+  [[nodiscard]] Point alongRim(std::int32_t v) const;
+
   /// Moves a vertex.
   bool move(std::int32_t v, const Point& to);
   /// One thread's notes while it works on its own slab of space.
@@ -227,11 +237,12 @@ class GuardedMesh {
   [[nodiscard]] TriangleMesh withAllSlots() const;
   std::int32_t addFace(const Corners& corners, Scratch& scratch);
   void removeFace(std::int32_t f, Scratch& scratch);
-  [[nodiscard]] int slabAxis() const;
-  /// Space cut into slabs along the longest side of the mesh; zones of slabs worked on together
-  /// touch, but do not overlap.
-  template <class Item, class Work>
-  void overSlabs(const std::vector<std::vector<Item>>& members, const Work& work);
+  /// Calls work(item, scratch) for each item, by slabs of space along the longest side of the mesh;
+  /// zones of slabs worked on together touch, but do not overlap.  What returns false, as it
+  /// reaches beyond its zone, is asked again at the end.
+  /// @param placeOf  coordinate of an item along an axis
+  template <class Item, class PlaceOf, class Work>
+  void overSlabs(const std::vector<Item>& items, const PlaceOf& placeOf, const Work& work);
 
   std::vector<Point> positions_;
   std::vector<Corners> faces_;

@@ -5,10 +5,12 @@
 
 #include "GuardedMesh.h"
 
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Core/Parallel.h"
 #include "MoveTogether.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace explica::surface {
@@ -31,22 +33,24 @@ constexpr int kSlab = 2 * kHalfSlab;
 
 }  // namespace
 
-int GuardedMesh::slabAxis() const {
-  return static_cast<int>(std::max_element(cellSize_.begin(), cellSize_.end()) - cellSize_.begin());
-}
-
-template <class Item, class Work>
-void GuardedMesh::overSlabs(const std::vector<std::vector<Item>>& members, const Work& work) {
+template <class Item, class PlaceOf, class Work>
+void GuardedMesh::overSlabs(const std::vector<Item>& items, const PlaceOf& placeOf,
+                            const Work& work) {
+  const int axis = static_cast<int>(std::ranges::max_element(cellSize_) - cellSize_.begin());
+  std::vector<std::vector<Item>> members((cellSize_[axis] + kSlab - 1) / kSlab);
+  for (const Item& item : items) members[cellAt(placeOf(item, axis), axis) / kSlab].push_back(item);
   const std::size_t slabs = members.size();
+  std::vector<std::vector<Item>> late(slabs);
   slabScratch_.resize(slabs);
   for (const std::size_t parity : {0, 1}) {
     parallelFor((slabs + 1 - parity) / 2, 1, [&](std::size_t pair) {
       const std::size_t slab = 2 * pair + parity;
       Scratch& scratch = slabScratch_[slab];
-      scratch.axis = slabAxis();
+      scratch.axis = axis;
       scratch.lowCell = static_cast<int>(slab) * kSlab - kHalfSlab;
       scratch.highCell = static_cast<int>(slab + 1) * kSlab + kHalfSlab - 1;
-      work(slab, scratch);
+      std::ranges::copy_if(members[slab], std::back_inserter(late[slab]),
+                           [&](const Item& item) { return !work(item, scratch); });
     });
   }
   // What the slabs freed is free for all, in an order that does not depend on the threads.
@@ -59,15 +63,14 @@ void GuardedMesh::overSlabs(const std::vector<std::vector<Item>>& members, const
     give(scratch.freeVertices, scratch_.freeVertices);
     scratch_.facesAdded += std::exchange(scratch.facesAdded, 0);
   }
+  for (const std::vector<Item>& ofSlab : late) {
+    for (const Item& item : ofSlab) work(item, scratch_);
+  }
 }
 
 std::vector<std::int32_t> GuardedMesh::allVertices() const {
-  std::vector<std::int32_t> vertices;
-  vertices.reserve(positions_.size());
-  for (std::int32_t v = 0; v < vertexSlots(); ++v) {
-    if (hasVertex(v)) vertices.push_back(v);
-  }
-  return vertices;
+  return indicesWhere(positions_.size(),
+                      [&](std::size_t v) { return hasVertex(static_cast<std::int32_t>(v)); });
 }
 
 void GuardedMesh::sweep(const std::function<bool(std::int32_t, Scratch&)>& step) {
@@ -78,43 +81,25 @@ void GuardedMesh::sweep(const std::vector<std::int32_t>& vertices,
                         const std::function<bool(std::int32_t, Scratch&)>& step) {
   if (vertices.empty()) return;
   bringUpToDate();
-  const int axis = slabAxis();
-  const int slabs = (cellSize_[axis] + kSlab - 1) / kSlab;
-  std::vector<std::vector<std::int32_t>> members(slabs), late(slabs);
-  for (const std::int32_t v : vertices) {
-    members[cellAt(positions_[v][axis], axis) / kSlab].push_back(v);
-  }
-  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
-    for (const std::int32_t v : members[slab]) {
-      scratch.leftZone = !inZone(v, scratch);
-      const bool isDone = !scratch.leftZone && step(v, scratch);
-      if (!isDone && scratch.leftZone) late[slab].push_back(v);
-    }
-  });
-  for (const std::vector<std::int32_t>& ofSlab : late) {
-    for (const std::int32_t v : ofSlab) step(v, scratch_);
-  }
+  overSlabs(
+      vertices, [&](std::int32_t v, int axis) { return positions_[v][axis]; },
+      [&](std::int32_t v, Scratch& scratch) {
+        scratch.leftZone = !inZone(v, scratch);
+        const bool isDone = !scratch.leftZone && step(v, scratch);
+        return isDone || !scratch.leftZone;
+      });
 }
 
 void GuardedMesh::sweepEdges(const std::vector<Edge>& edges,
                              const std::function<void(const Edge&, Scratch&)>& step) {
   bringUpToDate();
-  const int axis = slabAxis();
-  std::vector<std::vector<Edge>> members((cellSize_[axis] + kSlab - 1) / kSlab);
-  for (const Edge& edge : edges) {
-    members[cellAt(positions_[edge[0]][axis], axis) / kSlab].push_back(edge);
-  }
-  std::vector<std::vector<Edge>> late(members.size());
-  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
-    for (const Edge& edge : members[slab]) {
-      scratch.leftZone = !inZone(edge[0], scratch) || !inZone(edge[1], scratch);
-      if (!scratch.leftZone) step(edge, scratch);
-      if (scratch.leftZone) late[slab].push_back(edge);
-    }
-  });
-  for (const std::vector<Edge>& ofSlab : late) {
-    for (const Edge& edge : ofSlab) step(edge, scratch_);
-  }
+  overSlabs(
+      edges, [&](const Edge& edge, int axis) { return positions_[edge[0]][axis]; },
+      [&](const Edge& edge, Scratch& scratch) {
+        scratch.leftZone = !inZone(edge[0], scratch) || !inZone(edge[1], scratch);
+        if (!scratch.leftZone) step(edge, scratch);
+        return !scratch.leftZone;
+      });
 }
 
 TriangleMesh GuardedMesh::withAllSlots() const {
@@ -149,32 +134,23 @@ void GuardedMesh::bringUpToDate() {
 }
 
 void GuardedMesh::reboxAll() {
-  const int axis = slabAxis();
-  std::vector<std::vector<std::int32_t>> members((cellSize_[axis] + kSlab - 1) / kSlab);
-  for (std::int32_t f = 0; f < faceSlots(); ++f) {
-    if (hasFace(f)) members[cellAt(boxes_[f][axis], axis) / kSlab].push_back(f);
-  }
-  const auto boxNow = [&](std::int32_t f) {
-    const Corners& c = faces_[f];
-    return boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]});
-  };
-  std::vector<std::vector<std::int32_t>> late(members.size());
-  overSlabs(members, [&](std::size_t slab, Scratch& scratch) {
-    for (const std::int32_t f : members[slab]) {
-      const Box box = boxNow(f);
-      if (contains(boxes_[f], box)) continue;
-      const CellRange range = cellsOf(roomy(box));
-      if (range[axis] < scratch.lowCell || range[axis + 3] > scratch.highCell ||
-          cellAt(boxes_[f][axis + 3], axis) > scratch.highCell) {
-        late[slab].push_back(f);
-      } else {
+  const auto faces = indicesWhere(
+      faces_.size(), [&](std::size_t f) { return hasFace(static_cast<std::int32_t>(f)); });
+  overSlabs(
+      faces, [&](std::int32_t f, int axis) { return boxes_[f][axis]; },
+      [&](std::int32_t f, Scratch& scratch) {
+        const Corners& c = faces_[f];
+        const Box box = boxOf({positions_[c[0]], positions_[c[1]], positions_[c[2]]});
+        if (contains(boxes_[f], box)) return true;
+        const int axis = scratch.axis;
+        const CellRange range = cellsOf(roomy(box));
+        if (range[axis] < scratch.lowCell || range[axis + 3] > scratch.highCell ||
+            cellAt(boxes_[f][axis + 3], axis) > scratch.highCell) {
+          return false;
+        }
         rebox(f, box);
-      }
-    }
-  });
-  for (const std::vector<std::int32_t>& ofSlab : late) {
-    for (const std::int32_t f : ofSlab) rebox(f, boxNow(f));
-  }
+        return true;
+      });
 }
 
 }  // namespace explica::surface

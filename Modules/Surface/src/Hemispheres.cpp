@@ -78,8 +78,7 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
   Point centre = Point::Zero();
   for (std::size_t v = 0; v < white.size(); ++v) {
     if (!white[v]) continue;
-    const auto at = grid.subscripts(v);
-    points.push_back(grid.toWorld(Vector(at[0], at[1], at[2])));
+    points.push_back(centreOf(grid, v));
     centre += points.back();
   }
   if (points.empty()) throw InvalidInput("hemisphere: no white matter to separate");
@@ -96,8 +95,7 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
   const double sure = 10 * unit;  // from the plane: no gyrus bulges that far
   for (std::size_t v = 0; v < white.size(); ++v) {
     if (!white[v]) continue;
-    const auto at = grid.subscripts(v);
-    const double d = plane.normal.dot(grid.toWorld(Vector(at[0], at[1], at[2]))) - plane.offset;
+    const double d = plane.normal.dot(centreOf(grid, v)) - plane.offset;
     if (std::abs(d) > sure) sides[v] = d < 0 ? 1 : 2;
   }
   spreadLabels(white, sides);
@@ -114,7 +112,7 @@ Volume<std::uint8_t> splitHemispheres(const Volume<std::uint8_t>& white, const M
 
 void warnOfTwoHemispheres(const Mask& white, const Monitor& monitor) {
   constexpr double kBrain = 150000;  // mm^3 of white matter: more than one hemisphere's least
-  if (static_cast<double>(countIn(white)) * white.grid.voxelVolume() < kBrain) return;
+  if (static_cast<double>(voxelsIn(white)) * white.grid.voxelVolume() < kBrain) return;
   std::int64_t left = 0, right = 0;
   try {
     const Mask sides = splitHemispheres(white);
@@ -148,9 +146,9 @@ std::int64_t takeHemisphere(Side side, TissueMasks& masks, const Monitor& monito
   Mask& white = masks.white;
   const Mask sides = splitHemispheres(white, monitor);
   Mask all = sides;
-  Mask through(white.grid);
-  for (std::size_t v = 0; v < through.size(); ++v) through[v] = white[v] || masks.grey[v];
-  spreadLabels(through, all);
+  spreadLabels(
+      setWhere(white.grid, [&](std::size_t v) { return white[v] != 0 || masks.grey[v] != 0; }),
+      all);
   const std::uint8_t own = side == Side::Left ? 1 : 2;
   for (std::size_t v = 0; v < white.size(); ++v) {
     if (white[v] && sides[v] != own) {

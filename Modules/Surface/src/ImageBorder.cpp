@@ -6,6 +6,7 @@
 #include "BorderChooser.h"
 #include "EdgeSearch.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "MaskedImage.h"
 #include "NarrowFluid.h"
@@ -346,7 +347,7 @@ ImageBorders findBorders(const std::vector<Trajectory>& given, const TriangleMes
   const MaskedImage masked = beyondMask(images.image, kBeyondMask * voxel);
   const auto topology = geometry::buildTopology(white.faces, white.vertexCount());
   const double step = options.reach * voxel / kSide;
-  const double edge = meanEdge(white);
+  const double edge = geometry::meanEdgeLength(white);
   ImageBorders borders;
   borders.white = borders.outer = Eigen::VectorXd::Zero(white.vertexCount());
   borders.doubt = borders.missing = Eigen::MatrixXd::Zero(white.vertexCount(), 2);

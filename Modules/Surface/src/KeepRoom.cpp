@@ -5,6 +5,7 @@
 
 #include "Explica/Collision/CollisionScene.h"
 #include "Explica/Collision/Proximity.h"
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Core/Parallel.h"
 #include "MoveTogether.h"
 #include "Turns.h"
@@ -121,11 +122,7 @@ std::vector<std::int32_t> smallFaces(const TriangleMesh& mesh, double leastArea)
   parallelFor(isSmall.size(), 8192, [&](std::size_t f) {
     isSmall[f] = areaOf(mesh, static_cast<std::int32_t>(f)) < leastArea;
   });
-  std::vector<std::int32_t> small;
-  for (auto at = isSmall.begin(); (at = std::find(at, isSmall.end(), 1)) != isSmall.end(); ++at) {
-    small.push_back(static_cast<std::int32_t>(at - isSmall.begin()));
-  }
-  return small;
+  return indicesWhere(isSmall.size(), [&](std::size_t f) { return isSmall[f] != 0; });
 }
 
 /// Pushes, sweep by sweep, what is known to be near; returns what is left of it.

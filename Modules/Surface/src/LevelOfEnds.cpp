@@ -9,12 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace explica::surface {
 namespace {
 
-constexpr float kFloatNaN = std::numeric_limits<float>::quiet_NaN();
 /// Share of its band in which a level is a distance.
 constexpr float kKnown = 0.98F;
 
@@ -54,7 +52,7 @@ void addPlaces(const Trajectory& path, PathBorder border, double moved, const Gr
 float saidOf(const Place& place, float old, float rest, float band, float voxel) {
   const bool known = std::abs(old) < kKnown * band;
   const bool own = known ? std::abs(rest - old) < voxel : (rest > 0) == (old > 0);
-  return own ? (known ? old : rest) + place.moved : kFloatNaN;
+  return own ? (known ? old : rest) + place.moved : static_cast<float>(kNaN);
 }
 
 /// Places by the slice of their nearest voxel.

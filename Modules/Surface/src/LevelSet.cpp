@@ -4,7 +4,10 @@
 #include "Explica/Surface/LevelSet.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Harmonic/LabelBoundary.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -109,32 +112,27 @@ Volume<T> cropped(const Volume<T>& volume, const VoxelBox& box, T outside) {
 VoxelBox boundingBox(const Volume<std::uint8_t>& mask, int margin) {
   const auto& n = mask.grid.size;
   struct Range {
-    std::array<int, 3> low, high;
-    void operator+=(const Range& other) {
-      for (int a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], other.low[a]);
-        high[a] = std::max(high[a], other.high[a]);
-      }
-    }
+    Eigen::AlignedBox3i box;
+    void operator+=(const Range& other) { box.extend(other.box); }
   };
-  const Range nothing = {n, {-1, -1, -1}};
   const auto slices = static_cast<std::size_t>(n[2]);
-  const auto [low, high] = parallelSum(slices, 4, nothing, [&](std::size_t begin, std::size_t end) {
-    Range range = nothing;
-    for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k) {
-      for (int j = 0; j < n[1]; ++j) {
-        for (int i = 0; i < n[0]; ++i) {
-          if (mask(i, j, k)) range += Range{{i, j, k}, {i, j, k}};
+  const Eigen::AlignedBox3i found =
+      parallelSum(slices, 4, Range{}, [&](std::size_t begin, std::size_t end) {
+        Range range;
+        for (int k = static_cast<int>(begin); k < static_cast<int>(end); ++k) {
+          for (int j = 0; j < n[1]; ++j) {
+            for (int i = 0; i < n[0]; ++i) {
+              if (mask(i, j, k)) range.box.extend(Eigen::Vector3i(i, j, k));
+            }
+          }
         }
-      }
-    }
-    return range;
-  });
+        return range;
+      }).box;
   VoxelBox box;
-  if (high[0] < 0) return box;
+  if (found.isEmpty()) return box;
   for (int a = 0; a < 3; ++a) {
-    box.low[a] = low[a] - margin;
-    box.size[a] = high[a] - low[a] + 1 + 2 * margin;
+    box.low[a] = found.min()[a] - margin;
+    box.size[a] = found.sizes()[a] + 1 + 2 * margin;
   }
   return box;
 }
@@ -257,8 +255,7 @@ LevelSet distanceTo(const Boundary& boundary, const Volume<std::uint8_t>& side) 
 }  // namespace
 
 LevelSet levelSetOf(const Volume<std::uint8_t>& mask) {
-  Volume<std::uint8_t> side(mask.grid);
-  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = mask[v] ? 1 : 0; });
+  const VoxelSet side = setWhere(mask.grid, [&](std::size_t v) { return mask[v] != 0; });
   const harmonic::LabelBoundary boundary(side.data, mask.grid.size, 3, kTrust);
   return distanceTo(boundary, side);
 }
@@ -268,9 +265,8 @@ double bandOf(const Grid& grid) {
 }
 
 LevelSet distanceLevelOf(const LevelSet& level) {
-  Volume<std::uint8_t> side(level.grid);
-  parallelFor(side.size(), 1 << 16, [&](std::size_t v) { side[v] = level[v] > 0 ? 1 : 0; });
-  return distanceTo(ZeroBoundary(level), side);
+  return distanceTo(ZeroBoundary(level),
+                    setWhere(level.grid, [&](std::size_t v) { return level[v] > 0; }));
 }
 
 LevelSet levelSetOf(const Volume<float>& share) {

@@ -24,10 +24,6 @@ Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels) {
   return mask;
 }
 
-std::int64_t countIn(const Mask& mask) {
-  return countWhere(mask.size(), [&](std::size_t v) { return mask[v] != 0; });
-}
-
 std::int64_t countOnEdge(const Mask& mask) {
   std::int64_t count = 0;
   forOutermost(mask.grid, [&](int i, int j, int k) { count += mask(i, j, k) != 0; });
@@ -35,7 +31,7 @@ std::int64_t countOnEdge(const Mask& mask) {
 }
 
 std::int64_t addNearer(const Mask& unsided, Mask& own, const Mask& other) {
-  if (countIn(unsided) == 0) return 0;
+  if (voxelsIn(unsided) == 0) return 0;
   Mask sides(own.grid);
   for (std::size_t v = 0; v < own.size(); ++v) sides[v] = own[v] ? 1 : (other[v] ? 2 : 0);
   // Only the voxels without side are walked through; waves start at the sides' rims.

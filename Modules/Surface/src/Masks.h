@@ -16,9 +16,6 @@ using Mask = VoxelSet;
 /// 1 where a voxel has one of the labels.
 [[nodiscard]] Mask maskOf(const Volume<Label>& volume, const std::vector<Label>& labels);
 
-/// Voxels that are not 0.
-[[nodiscard]] std::int64_t countIn(const Mask& mask);
-
 /// How many numbers below `count` fulfil a condition; asked on several threads.
 template <class Condition>
 [[nodiscard]] std::int64_t countWhere(std::size_t count, const Condition& condition) {
@@ -30,7 +27,7 @@ template <class Condition>
   });
 }
 
-/// Those of them that lie on the edge of the image.
+/// Voxels that are not 0 and lie on the edge of the image.
 [[nodiscard]] std::int64_t countOnEdge(const Mask& mask);
 
 /// Adds the voxels without side that are nearer to `own` than to `other`.

@@ -3,6 +3,7 @@
 
 #include "MoveTogether.h"
 
+#include "Explica/Core/IndicesWhere.h"
 #include "Explica/Core/Parallel.h"
 
 #include <algorithm>
@@ -19,11 +20,7 @@ std::vector<std::int32_t> facesAt(const TriangleMesh& mesh,
     has[f] =
         isMarked[mesh.faces(row, 0)] | isMarked[mesh.faces(row, 1)] | isMarked[mesh.faces(row, 2)];
   });
-  std::vector<std::int32_t> faces;
-  for (auto at = has.begin(); (at = std::find(at, has.end(), std::uint8_t{1})) != has.end(); ++at) {
-    faces.push_back(static_cast<std::int32_t>(at - has.begin()));
-  }
-  return faces;
+  return indicesWhere(has.size(), [&](std::size_t f) { return has[f] != 0; });
 }
 
 }  // namespace

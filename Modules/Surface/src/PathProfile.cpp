@@ -128,15 +128,4 @@ int timesFor(double deviation, double edge) {
       std::clamp(std::round(deviation * deviation / (kVariance * edge * edge)), 1.0, kMost));
 }
 
-double meanEdge(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    for (int c = 0; c < 3; ++c) {
-      sum += (mesh.positions.row(mesh.faces(f, c)) - mesh.positions.row(mesh.faces(f, (c + 1) % 3)))
-                 .norm();
-    }
-  }
-  return mesh.faceCount() > 0 ? sum / (3 * static_cast<double>(mesh.faceCount())) : 0;
-}
-
 }  // namespace explica::surface

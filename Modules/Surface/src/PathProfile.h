@@ -62,7 +62,4 @@ using VertexRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 /// edge in each direction.
 [[nodiscard]] int timesFor(double deviation, double edge);
 
-/// Mean length of the edges.
-[[nodiscard]] double meanEdge(const TriangleMesh& mesh);
-
 }  // namespace explica::surface

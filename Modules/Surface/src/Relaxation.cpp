@@ -19,34 +19,6 @@
 namespace explica::surface {
 namespace {
 
-/// A vertex among its neighbours.
-struct Ring {
-  Point centre = Point::Zero();    ///< area-weighted mean of the faces' centroids
-  Point mean = Point::Zero();      ///< of the neighbours
-  Vector normal = Vector::Zero();  ///< area-weighted, of unit length; zero if there is none
-};
-
-Ring ringOf(const GuardedMesh& mesh, std::int32_t v) {
-  Ring ring;
-  double weight = 0;
-  for (const std::int32_t f : mesh.facesOf(v)) {
-    const auto& c = mesh.face(f);
-    const Vector normal = mesh.normalOf(f);
-    const double area = normal.norm();
-    const Point sum = mesh.at(c[0]) + mesh.at(c[1]) + mesh.at(c[2]);
-    ring.centre += area / 3 * sum;
-    ring.mean += sum - mesh.at(v);
-    ring.normal += normal;
-    weight += area;
-  }
-  // Each neighbour is a corner of two faces.
-  ring.mean /= 2 * static_cast<double>(mesh.valence(v));
-  ring.centre = weight > 0 ? Point(ring.centre / weight) : mesh.at(v);
-  const double length = ring.normal.norm();
-  ring.normal = length > 0 ? Vector(ring.normal / length) : Vector(Vector::Zero());
-  return ring;
-}
-
 /// When a ring's triangles want help; lengths in mean edges of the surface it grew out of.
 struct Limits {
   double quality;    ///< of a face, 1 if equilateral: flatter ones are poor
@@ -180,11 +152,10 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
     parallelFor(vertices.size(), 64, [&](std::size_t n) {
       const std::int32_t v = vertices[n];
       if (guarded.onRim(v)) {
-        const auto [before, after] = guarded.rimNeighbours(v);
-        goal[v] = 0.5 * guarded.at(v) + 0.25 * (guarded.at(before) + guarded.at(after));
+        goal[v] = guarded.alongRim(v);
         return;
       }
-      const Ring ring = ringOf(guarded, v);
+      const GuardedMesh::Ring ring = guarded.ringOf(v);
       const Vector step = ring.centre - guarded.at(v);
       const double across = ring.normal.dot(step);
       const double bend = std::clamp(options.bend * across, -options.most, options.most);
@@ -205,7 +176,7 @@ TriangleMesh relaxed(const TriangleMesh& mesh, double edge, const std::vector<st
   for (int sweep = 0; sweep < options.lastSweeps; ++sweep) {
     guarded.sweep(unsound.vertices(), [&](std::int32_t v, GuardedMesh::Scratch& scratch) {
       if (guarded.onRim(v)) return true;
-      const Ring ring = ringOf(guarded, v);
+      const GuardedMesh::Ring ring = guarded.ringOf(v);
       const Point from = guarded.at(v), to = sweep % 2 == 0 ? ring.mean : ring.centre;
       return std::any_of(kShares.begin(), kShares.end(), [&](double share) {
         return guarded.move(v, partOfWay(from, to, share), scratch);

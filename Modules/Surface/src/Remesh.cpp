@@ -21,9 +21,7 @@
 namespace explica::surface {
 namespace {
 
-/// Edges longer than kLong times the aim are split, shorter than kShort times it are collapsed
-/// [Botsch2004, Sec. 4].
-constexpr double kLong = 4.0 / 3;
+/// Edges shorter than this share of the aim are collapsed [Botsch2004, Sec. 4].
 constexpr double kShort = 4.0 / 5;
 
 /// No edge is aimed at that is shorter than this share of a voxel: of so small a triangle the
@@ -127,14 +125,9 @@ class Remesher {
   std::vector<Edge> edges(const Condition& wanted, bool longestFirst) const {
     std::vector<std::pair<int, Edge>> found;
     const double perClass = (longestFirst ? -1 : 1) / (kQueueClass * edge_);
-    for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
-      if (!mesh_.hasFace(f)) continue;
-      for (int k = 0; k < 3; ++k) {
-        const std::int32_t a = mesh_.face(f)[k], b = mesh_.face(f)[(k + 1) % 3];
-        if (a > b) continue;
-        const double length = (mesh_.at(a) - mesh_.at(b)).norm();
-        if (wanted(length)) found.push_back({static_cast<int>(length * perClass), {a, b}});
-      }
+    for (const Edge& e : allEdges()) {
+      const double length = (mesh_.at(e[0]) - mesh_.at(e[1])).norm();
+      if (wanted(length)) found.emplace_back(static_cast<int>(length * perClass), e);
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -144,7 +137,7 @@ class Remesher {
     return sorted;
   }
 
-  std::vector<Edge> allEdges() const {
+  [[nodiscard]] std::vector<Edge> allEdges() const {
     std::vector<Edge> found;
     found.reserve(3 * mesh_.faceCount() / 2);
     for (std::int32_t f = 0; f < mesh_.faceSlots(); ++f) {
@@ -191,31 +184,13 @@ class Remesher {
     return flat(m1, m2) && flat(n1 + n2, m1) && flat(n1 + n2, m2);
   }
 
-  /// Half way from a vertex of the rim to the middle of its neighbours there.
-  [[nodiscard]] Point alongRim(std::int32_t v) const {
-    const auto [before, after] = mesh_.rimNeighbours(v);
-    return 0.5 * mesh_.at(v) + 0.25 * (mesh_.at(before) + mesh_.at(after));
-  }
-
   /// Area-weighted mean of the ring's centroids, moved in the tangent plane only.
   [[nodiscard]] Point centred(std::int32_t v) const {
-    if (mesh_.onRim(v)) return alongRim(v);
-    Vector sum = Vector::Zero(), normal = Vector::Zero();
-    double weight = 0;
-    for (const std::int32_t f : mesh_.facesOf(v)) {
-      const auto& c = mesh_.face(f);
-      const Vector n = mesh_.normalOf(f);
-      const double area = n.norm();
-      sum += area / 3 * (mesh_.at(c[0]) + mesh_.at(c[1]) + mesh_.at(c[2]));
-      weight += area;
-      normal += n;
-    }
-    if (weight == 0) return mesh_.at(v);
-    const double length = normal.norm();
-    const Vector step = sum / weight - mesh_.at(v);
-    if (length == 0) return mesh_.at(v) + 0.5 * step;
-    normal /= length;
-    return mesh_.at(v) + step - normal * normal.dot(step);
+    if (mesh_.onRim(v)) return mesh_.alongRim(v);
+    const GuardedMesh::Ring ring = mesh_.ringOf(v);
+    const Vector step = ring.centre - mesh_.at(v);
+    if (ring.normal.isZero(0)) return mesh_.at(v) + 0.5 * step;
+    return mesh_.at(v) + step - ring.normal * ring.normal.dot(step);
   }
 
   /// Nearest zero of the level set along the gradient, if it is near and the surface's side of it

@@ -4,6 +4,7 @@
 #include "RibbonPaths.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Surface/LevelSet.h"
 
 #include <array>
@@ -39,8 +40,7 @@ Trajectory RibbonPaths::from(const Point& start, double target) const {
 
 Trajectory RibbonPaths::outwardFrom(const Point& start, const Vector& normal) const {
   // A little outward, so that a thin sheet's other side is not the nearest tissue.
-  constexpr double kOff = 0.125;  // voxels
-  const double off = kOff * voxelSize(annulus_.grid);
+  const double off = kStartOff * voxelSize(annulus_.grid);
   Trajectory path = from(start + off * normal, 1);
   path.points.front() = start;
   for (std::size_t k = 1; k < path.along.size(); ++k) path.along[k] += static_cast<float>(off);
@@ -48,10 +48,8 @@ Trajectory RibbonPaths::outwardFrom(const Point& start, const Vector& normal) co
 }
 
 bool RibbonPaths::isTissue(const Point& point) const {
-  const Vector index = annulus_.grid.toIndex(point);
-  std::array<int, 3> voxel;
-  for (int a = 0; a < 3; ++a) voxel[a] = static_cast<int>(std::lround(index[a]));
-  return annulus_.numberOf(voxel) >= 0;
+  const std::int64_t voxel = voxelAt(annulus_.grid, point);
+  return voxel >= 0 && annulus_.numberOf(annulus_.grid.subscripts(voxel)) >= 0;
 }
 
 bool RibbonPaths::isBank(const Point& point) const {

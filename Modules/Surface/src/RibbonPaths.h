@@ -11,6 +11,9 @@
 
 namespace explica::surface {
 
+/// So far outward of white matter tissue begins, or there is none, voxels.
+inline constexpr double kStartOff = 0.125;
+
 /// What ended a trajectory.
 enum class TrajectoryEnd : std::uint8_t {
   Outer,    ///< the outer boundary

@@ -3,7 +3,8 @@
 
 #include "SheetMesh.h"
 
-#include "Explica/Core/DisjointSets.h"
+#include "Explica/Core/IndicesWhere.h"
+#include "Explica/Geometry/FacePieces.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
@@ -15,54 +16,22 @@ namespace {
 
 using geometry::MeshTopology;
 
-std::vector<double> areasOf(const TriangleMesh& mesh, const std::vector<std::int32_t>& piece) {
-  std::vector<double> areas;
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    if (piece[f] < 0) continue;
-    if (piece[f] >= static_cast<std::int32_t>(areas.size())) areas.resize(piece[f] + 1, 0.0);
-    const Vector normal =
-        (mesh.corner(f, 1) - mesh.corner(f, 0)).cross(mesh.corner(f, 2) - mesh.corner(f, 0));
-    areas[piece[f]] += 0.5 * normal.norm();
-  }
-  return areas;
-}
-
 /// Marks all fans at a vertex but the largest one.
-bool markSmallFans(const MeshTopology& topology, std::int32_t v,
+bool markSmallFans(const Faces& faces, const MeshTopology& topology, std::int32_t v,
                    std::vector<std::uint8_t>& marked) {
-  const auto faces = topology.vertexFaces[v];
-  DisjointSets fans(faces.size());
-  for (std::size_t a = 0; a < faces.size(); ++a) {
-    for (int k = 0; k < 3; ++k) {
-      const std::int32_t edge = topology.faceEdges(faces[a], k);
-      if (topology.edges(edge, 0) != v && topology.edges(edge, 1) != v) continue;
-      for (std::size_t b = 0; b < a; ++b) {
-        if ((topology.edgeFaces.row(edge).array() == faces[b]).any()) {
-          fans.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-        }
-      }
-    }
+  auto fans = geometry::fansAt(faces, v, topology.vertexFaces[v]);
+  const auto largest = std::ranges::max_element(fans, {}, &std::vector<std::int32_t>::size);
+  if (largest != fans.end()) fans.erase(largest);
+  for (const auto& fan : fans) {
+    for (const std::int32_t f : fan) marked[f] = 1;
   }
-  std::vector<int> sizes(faces.size(), 0);
-  for (std::size_t a = 0; a < faces.size(); ++a) ++sizes[fans.root(static_cast<std::int32_t>(a))];
-  const auto largest =
-      static_cast<std::int32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  bool any = false;
-  for (std::size_t a = 0; a < faces.size(); ++a) {
-    if (fans.root(static_cast<std::int32_t>(a)) == largest) continue;
-    marked[faces[a]] = 1;
-    any = true;
-  }
-  return any;
+  return !fans.empty();
 }
 
 }  // namespace
 
 TriangleMesh withoutFaces(const TriangleMesh& mesh, const std::vector<std::uint8_t>& marked) {
-  std::vector<std::int32_t> kept;
-  for (std::size_t f = 0; f < marked.size(); ++f) {
-    if (!marked[f]) kept.push_back(static_cast<std::int32_t>(f));
-  }
+  const auto kept = indicesWhere(marked.size(), [&](auto f) { return marked[f] == 0; });
   return geometry::extractFaces(mesh, kept).mesh;
 }
 
@@ -85,7 +54,7 @@ TriangleMesh withoutPinches(const TriangleMesh& given) {
       any = true;
     }
     for (std::int32_t v = 0; v < mesh.vertexCount(); ++v) {
-      if (onRim[v] && markSmallFans(topology, v, marked)) any = true;
+      if (onRim[v] && markSmallFans(mesh.faces, topology, v, marked)) any = true;
     }
     if (!any) break;
     mesh = withoutFaces(mesh, marked);
@@ -96,7 +65,7 @@ TriangleMesh withoutPinches(const TriangleMesh& given) {
 Pieces largePieces(const TriangleMesh& mesh, double least) {
   const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   const auto piece = geometry::facePieces(topology, std::vector<bool>(mesh.faceCount(), true));
-  const std::vector<double> areas = areasOf(mesh, piece);
+  const std::vector<double> areas = geometry::pieceAreas(mesh, piece);
   if (!areas.empty()) least = std::min(least, *std::max_element(areas.begin(), areas.end()));
   std::vector<std::uint8_t> marked(mesh.faceCount());
   for (std::size_t f = 0; f < marked.size(); ++f) marked[f] = areas[piece[f]] < least;
@@ -108,7 +77,7 @@ std::vector<std::uint8_t> largePatches(const TriangleMesh& mesh, std::vector<std
                                        double least) {
   const MeshTopology topology = geometry::buildTopology(mesh.faces, mesh.vertexCount());
   const auto piece = geometry::facePieces(topology, {marked.begin(), marked.end()});
-  const std::vector<double> areas = areasOf(mesh, piece);
+  const std::vector<double> areas = geometry::pieceAreas(mesh, piece);
   for (std::size_t f = 0; f < marked.size(); ++f) {
     if (marked[f]) marked[f] = areas[piece[f]] >= least;
   }

@@ -4,6 +4,7 @@
 #include "Thinning.h"
 
 #include "Explica/Core/Parallel.h"
+#include "Explica/Geometry/MeshTopology.h"
 #include "Explica/Geometry/SelfIntersection.h"
 #include "GuardedMesh.h"
 #include "MoveTogether.h"
@@ -29,8 +30,6 @@ using Edge = GuardedMesh::Edge;
 constexpr std::array<double, 2> kEdgeShares = {0.4, 0.6};
 /// Edges are taken by length in classes of this share of the aim, each in the order of memory.
 constexpr double kLengthClass = 0.05;
-/// No new edge is longer than this share of the aim.
-constexpr double kLongest = 4.0 / 3;
 /// Cosine of the greatest turn of a face, and least quality of a new one.
 constexpr double kLeastCosine = 0.3, kLeastQuality = 0.15;
 /// Faces at an edge's two ends at most.
@@ -173,7 +172,7 @@ class Thinner {
   /// True if the faces that are left are well shaped with both ends at `to`.
   [[nodiscard]] bool staysShaped(const Star& star, std::int32_t u, std::int32_t v,
                                  const Point& to) const {
-    const double longest = kLongest * kLongest * edge_ * edge_;
+    const double longest = kLong * kLong * edge_ * edge_;
     for (std::size_t n = 0; n < star.count; ++n) {
       const Corners& c = faces_[star.faces[n]];
       const int k = c[0] == u || c[0] == v ? 0 : (c[1] == u || c[1] == v ? 1 : 2);
@@ -326,26 +325,6 @@ void markBranched(const Faces& faces, std::vector<std::uint8_t>& marked) {
   }
 }
 
-/// The vertices in use only.
-TriangleMesh compacted(const TriangleMesh& mesh) {
-  std::vector<std::int32_t> number(static_cast<std::size_t>(mesh.vertexCount()), -1);
-  for (Eigen::Index f = 0; f < mesh.faceCount(); ++f) {
-    for (int k = 0; k < 3; ++k) number[mesh.faces(f, k)] = 0;
-  }
-  std::int32_t count = 0;
-  for (std::int32_t& n : number) {
-    if (n == 0) n = count++;
-  }
-  TriangleMesh found;
-  found.positions.resize(count, 3);
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] >= 0)
-      found.positions.row(number[v]) = mesh.positions.row(static_cast<Eigen::Index>(v));
-  }
-  found.faces = mesh.faces.unaryExpr([&](std::int32_t v) { return number[v]; });
-  return found;
-}
-
 /// V - E + F with E = 3 F / 2, twice: of meshes with the same rims it differs as their topology.
 std::int64_t characteristicOf(const TriangleMesh& mesh) {
   return 2 * mesh.vertexCount() - mesh.faceCount();
@@ -383,7 +362,7 @@ TriangleMesh thinned(const TriangleMesh& given, const LevelSet& level, double ed
     std::fill(marked.begin(), marked.end(), std::uint8_t{0});
     markBranched(found.faces, marked);
   }
-  found = compacted(found);
+  found = geometry::extractFaces(found, found.allFaces()).mesh;
   // Parting could in principle leave another topology: then the way of care is the only one.
   return pairs.empty() && characteristicOf(found) == characteristicOf(given) ? found : mesh;
 }

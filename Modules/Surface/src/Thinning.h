@@ -7,6 +7,9 @@
 
 namespace explica::surface {
 
+/// Edges longer than so many times the aim are split, and none is made [Botsch2004, Sec. 4].
+inline constexpr double kLong = 4.0 / 3;
+
 /// A mesh with far fewer triangles, before it is worked on with care.
 ///
 /// Edges much shorter than `edge` are collapsed, shortest first, in regions of memory that are

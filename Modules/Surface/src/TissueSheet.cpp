@@ -53,8 +53,6 @@ constexpr int kSheetSteps = 3;
 /// Pieces of one role that only tissue surrounds become tissue: vessels, specks, lost voxels.
 std::int64_t fillPockets(Volume<Site>& roles) {
   const Grid& grid = roles.grid;
-  const std::array<std::ptrdiff_t, 3> strides = {
-      1, grid.size[0], static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1]};
   const auto tissue = std::count(roles.data.begin(), roles.data.end(), Site::Tissue);
   const auto most = static_cast<std::size_t>(kPocket * static_cast<double>(tissue));
   std::vector<std::uint8_t> seen(roles.size(), 0);
@@ -67,19 +65,10 @@ std::int64_t fillPockets(Volume<Site>& roles) {
     piece.assign(1, start);
     seen[start] = 1;
     for (std::size_t head = 0; head < piece.size(); ++head) {
-      const auto at = grid.subscripts(piece[head]);
-      for (int d = 0; d < 6; ++d) {
-        const int a = d / 2, to = at[a] + (d % 2 == 0 ? -1 : 1);
-        if (to < 0 || to >= grid.size[a]) {
-          enclosed = false;
-          continue;
-        }
-        const std::size_t w = piece[head] + (d % 2 == 0 ? -strides[a] : strides[a]);
-        if (roles[w] == role && !seen[w]) {
-          seen[w] = 1;
-          piece.push_back(w);
-        }
-        enclosed = enclosed && (roles[w] == role || roles[w] == Site::Tissue);
+      for (const std::int64_t w : grid.neighbours(piece[head])) {
+        enclosed = enclosed && w >= 0 && (roles[w] == role || roles[w] == Site::Tissue);
+        if (w < 0 || roles[w] != role || std::exchange(seen[w], 1) != 0) continue;
+        piece.push_back(static_cast<std::size_t>(w));
       }
     }
     if (!enclosed || piece.size() > most) continue;

@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Parallel.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Freudenthal.h"
 
@@ -141,51 +142,12 @@ std::vector<std::vector<std::size_t>> pieces(const Marks& mask, const Grid& grid
   return found;
 }
 
-/// Squared distances along one row: lower envelope of parabolas of curvature `squaredStep`
-/// [Felzenszwalb2012].
-void transformRow(std::vector<double>& f, double squaredStep, std::vector<int>& sites,
-                  std::vector<double>& from, std::vector<double>& out) {
-  const int n = static_cast<int>(f.size());
-  int last = -1;
-  for (int q = 0; q < n; ++q) {
-    if (f[q] == kInfinity) continue;
-    double start = -kInfinity;
-    while (last >= 0) {
-      const int p = sites[last];
-      start =
-          ((f[q] - f[p]) / squaredStep + static_cast<double>(q) * q - static_cast<double>(p) * p) /
-          (2.0 * (q - p));
-      if (start > from[last]) break;
-      --last;
-    }
-    ++last;
-    sites[last] = q;
-    from[last] = last == 0 ? -kInfinity : start;
-  }
-  if (last < 0) return;
-  int current = 0;
-  for (int q = 0; q < n; ++q) {
-    while (current < last && from[current + 1] <= q) ++current;
-    const double d = q - sites[current];
-    out[q] = squaredStep * d * d + f[sites[current]];
-  }
-  f = out;
-}
-
-/// The same along a row of the mask itself.
-void transformFirstRow(const std::uint8_t* mask, std::uint8_t target, std::size_t length,
-                       double squaredStep, float* squared) {
-  const auto at = [&](double steps) { return static_cast<float>(squaredStep * steps * steps); };
-  double steps = kInfinity;  // since the last voxel of the target
-  for (std::size_t i = 0; i < length; ++i) {
-    steps = mask[i] == target ? 0 : steps + 1;
-    squared[i] = at(steps);
-  }
-  steps = kInfinity;
-  for (std::size_t i = length; i-- > 0;) {
-    steps = mask[i] == target ? 0 : steps + 1;
-    squared[i] = std::min(squared[i], at(steps));
-  }
+/// Distance of each voxel's centre to the nearest one of the set, mm.
+Volume<float> distancesTo(const VoxelSet& set) {
+  Volume<float> distance = squaredDistanceTo(set);
+  parallelFor(distance.size(), 1 << 16,
+              [&](std::size_t v) { distance[v] = std::sqrt(distance[v]); });
+  return distance;
 }
 
 Defect describeChange(const LevelSet& level, const std::vector<std::size_t>& voxels,
@@ -249,12 +211,11 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
               const Monitor& monitor) {
   const Grid& grid = level.grid;
   const double unit = grid.spacing.minCoeff();
-  Volume<std::uint8_t> mask(grid);
-  mask.data = inside;
 
   monitor.progress(0.2, "growing from inside and from outside");
   Marks seed(inside.size(), 0), box(inside.size());
-  const Volume<float> depth = distanceTo(mask, 0);
+  const Volume<float> depth =
+      distancesTo(setWhere(grid, [&](std::size_t v) { return inside[v] == 0; }));
   seed[std::max_element(depth.data.begin(), depth.data.end()) - depth.data.begin()] = 1;
   for (std::size_t v = 0; v < box.size(); ++v) box[v] = !onBorder(grid, v);
   HomotopicSet grown(grid, std::move(seed)), shrunk(grid, std::move(box));
@@ -263,7 +224,8 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
     if (side == 0) {
       grown.approach(inside, depth, unit);
     } else {
-      shrunk.approach(inside, distanceTo(mask, 1), unit);
+      shrunk.approach(
+          inside, distancesTo(setWhere(grid, [&](std::size_t v) { return inside[v] != 0; })), unit);
     }
   });
   if (grown.members() == inside) return;
@@ -297,39 +259,6 @@ void makeBall(const LevelSet& level, Marks& inside, std::vector<Defect>& defects
 }
 
 }  // namespace
-
-Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target) {
-  const Grid& grid = mask.grid;
-  const auto& n = grid.size;
-  Volume<float> squared(grid);
-  if (mask.size() == 0) return squared;
-  const auto length = static_cast<std::size_t>(n[0]);
-  parallelFor(mask.size() / length, 64, [&](std::size_t row) {
-    transformFirstRow(&mask[row * length], target, length, grid.spacing[0] * grid.spacing[0],
-                      &squared[row * length]);
-  });
-  for (int axis = 1; axis < 3; ++axis) {
-    // Neighbours along the first axis one after another: they share lines of memory.
-    const int a = 0, b = 3 - axis;
-    const std::size_t strides[3] = {1, static_cast<std::size_t>(n[0]),
-                                    static_cast<std::size_t>(n[0]) * n[1]};
-    const double squaredStep = grid.spacing[axis] * grid.spacing[axis];
-    parallelForBlocks(n[b], 4, [&](std::size_t begin, std::size_t end) {
-      std::vector<double> f(n[axis]), from(n[axis]), out(n[axis]);
-      std::vector<int> sites(n[axis]);
-      for (std::size_t y = begin; y < end; ++y) {
-        for (int x = 0; x < n[a]; ++x) {
-          float* row = squared.data.data() + x * strides[a] + y * strides[b];
-          for (int i = 0; i < n[axis]; ++i) f[i] = row[i * strides[axis]];
-          transformRow(f, squaredStep, sites, from, out);
-          for (int i = 0; i < n[axis]; ++i) row[i * strides[axis]] = static_cast<float>(f[i]);
-        }
-      }
-    });
-  }
-  parallelFor(mask.size(), 1 << 16, [&](std::size_t v) { squared[v] = std::sqrt(squared[v]); });
-  return squared;
-}
 
 std::int64_t boundaryEulerCharacteristic(const LevelSet& level) {
   // The boundary surface's Euler characteristic is twice that of the foreground's complex; that is

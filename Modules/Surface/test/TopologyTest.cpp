@@ -166,15 +166,5 @@ TEST(IsoSurface, ConvergesAtSecondOrder) {
   EXPECT_NEAR(0.25 * std::log2(areaError[0] / areaError[2]), 2.2, 0.4);
 }
 
-TEST(DistanceTo, IsEuclideanOnAnisotropicVoxels) {
-  Grid grid = cube(12, 1);
-  grid.spacing = Vector(1, 2, 0.5);
-  Volume<std::uint8_t> mask(grid, 0);
-  mask(3, 4, 5) = 1;
-  const auto distance = distanceTo(mask, 1);
-  EXPECT_NEAR(distance(6, 2, 9), std::sqrt(9 + 16 + 4), 1e-5);
-  EXPECT_EQ(distance(3, 4, 5), 0);
-}
-
 }  // namespace
 }  // namespace explica::surface

@@ -177,8 +177,7 @@ std::string leftOutNote(const Frame& frame) {
 }
 
 std::string here(const Beat& beat, Quantity quantity) {
-  const double value = valueOf(beat, quantity);
-  return cellText(value, "%.1f");
+  return cellText(valueOf(beat, quantity), "%.1f");
 }
 
 /// Thickness of healthy adults and of this heart.

@@ -149,8 +149,8 @@ Volume<Label> relabelled(const Volume<Label>& frame, const HeartRoles& roles) {
 
 std::int64_t takeOutIslands(Volume<Label>& heart) {
   if (std::ranges::find(heart.data, kWall) == heart.data.end()) return 0;
-  VoxelSet left(heart.grid, 0);
-  for (std::size_t v = 0; v < heart.size(); ++v) left[v] = heart[v] == kCavity || heart[v] == kWall;
+  const VoxelSet left =
+      setWhere(heart.grid, [&](std::size_t v) { return heart[v] == kCavity || heart[v] == kWall; });
   const Components pieces = componentsOf(left);
   std::vector<bool> hasCavity(pieces.size.size()), hasWall(pieces.size.size());
   for (std::size_t v = 0; v < heart.size(); ++v) {

@@ -31,7 +31,7 @@ std::vector<bool> intactSlices(const std::vector<Slice>& slices, const Volume<La
     if (heart[v] != kCavity && heart[v] != kWall) continue;
     const auto s = heart.grid.subscripts(v);
     const auto k = static_cast<std::size_t>(s[2]);
-    if (cut[k] && atBase(heart.grid.toWorld(Vector(s[0], s[1], s[2])), heart.grid, axis)) {
+    if (cut[k] && atBase(centreOf(heart.grid, v), heart.grid, axis)) {
       intact[k] = false;
     }
   }

@@ -61,7 +61,7 @@ std::vector<Point> cavityPoints(const Volume<Label>& heart, const SliceShifts& s
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kCavity) continue;
     const auto s = heart.grid.subscripts(v);
-    points.push_back(heart.grid.toWorld(Vector(s[0], s[1], s[2])) - moved(heart.grid, shift, s[2]));
+    points.push_back(centreOf(heart.grid, v) - moved(heart.grid, shift, s[2]));
   }
   return points;
 }

@@ -34,9 +34,7 @@ std::optional<Vector> across(const LongAxis& axis, Vector v) {
 std::vector<Point> pointsOf(const Volume<Label>& heart, Label label) {
   std::vector<Point> points;
   for (std::size_t v = 0; v < heart.size(); ++v) {
-    if (heart[v] != label) continue;
-    const auto s = heart.grid.subscripts(v);
-    points.push_back(heart.grid.toWorld(Vector(s[0], s[1], s[2])));
+    if (heart[v] == label) points.push_back(centreOf(heart.grid, v));
   }
   return points;
 }
@@ -50,7 +48,7 @@ std::vector<Point> septalPoints(const Volume<Label>& heart, const LongAxis& axis
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kWall) continue;
     const auto s = heart.grid.subscripts(v);
-    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    const Point x = centreOf(heart.grid, v);
     const double share = axis.share(x);
     if (share < 0 || share > 2.0 / 3) continue;
     bool touches = false;

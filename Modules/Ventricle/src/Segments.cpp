@@ -57,7 +57,7 @@ Segments segmentsOf(const Volume<Label>& heart, const WallThickness& wall, const
   parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
     if (heart[v] != kWall) return;
     const auto s = heart.grid.subscripts(v);
-    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    const Point x = centreOf(heart.grid, v);
     const double angle = orientation.angleDeg(axis, x, middleAt(wall, axis, heart.grid, x, s[2]));
     result.segmentOf[v] = static_cast<std::uint8_t>(segmentAt(axis.share(x), angle));
   });

@@ -70,8 +70,7 @@ View viewOf(const Beat& beat, const Frame& frame) {
   double reach = 1;
   for (std::size_t v = 0; v < frame.heart.size(); ++v) {
     if (frame.heart[v] != kWall) continue;
-    const auto s = frame.heart.grid.subscripts(v);
-    const Point x = frame.heart.grid.toWorld(Vector(s[0], s[1], s[2]));
+    const Point x = centreOf(frame.heart.grid, v);
     reach = std::max(reach, (x - frame.axis.foot(x)).norm());
   }
   view.scale = 0.44 * kTile / reach;

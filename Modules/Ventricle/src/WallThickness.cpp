@@ -32,21 +32,22 @@ double median(std::vector<double> values) {
   return values.empty() ? kNaN : upperMedian(std::move(values));
 }
 
+/// Middle of two voxels, RAS mm.
+Point between(const Grid& grid, std::size_t a, std::int64_t b) {
+  const auto s = grid.subscripts(a), q = grid.subscripts(static_cast<std::size_t>(b));
+  return grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], s[2] + q[2]));
+}
+
 /// Faces between the cavity and what is neither cavity nor wall nor insulated, RAS mm.
 std::vector<Point> contactsOf(const Volume<Label>& heart) {
   std::vector<Point> contacts;
-  const auto& size = heart.grid.size;
   for (std::size_t v = 0; v < heart.size(); ++v) {
     if (heart[v] != kCavity) continue;
-    const auto s = heart.grid.subscripts(v);
-    for (int d = 0; d < 6; ++d) {
-      auto q = s;
-      q[d / 2] += d % 2 ? 1 : -1;
-      const bool inside = q[d / 2] >= 0 && q[d / 2] < size[d / 2];
-      if (!inside) continue;  // the edge of the field of view is insulated
-      const Label other = heart(q[0], q[1], q[2]);
+    for (const std::int64_t next : heart.grid.neighbours(v)) {
+      if (next < 0) continue;  // the edge of the field of view is insulated
+      const Label other = heart[next];
       if (other == kCavity || other == kWall || other == kBeyondBase) continue;
-      contacts.push_back(heart.grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], s[2] + q[2])));
+      contacts.push_back(between(heart.grid, v, next));
     }
   }
   return contacts;
@@ -69,9 +70,7 @@ void insulateBeyondBase(Volume<Label>& heart, const LongAxis& axis) {
   const double tolerance = 0.5 * heart.grid.spacing.maxCoeff();
   parallelFor(heart.size(), 1 << 14, [&](std::size_t v) {
     if (heart[v] == kCavity || heart[v] == kWall) return;
-    const auto s = heart.grid.subscripts(v);
-    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
-    if ((x - centre).dot(normal) > -tolerance) heart[v] = kBeyondBase;
+    if ((centreOf(heart.grid, v) - centre).dot(normal) > -tolerance) heart[v] = kBeyondBase;
   });
 }
 
@@ -112,8 +111,7 @@ void insulateAtBase(Volume<Label>& heart, const std::vector<bool>& cut, const Lo
     if (heart[v] == kCavity || heart[v] == kWall) return;
     const auto s = heart.grid.subscripts(v);
     if (!cut[static_cast<std::size_t>(s[2])]) return;
-    const Point x = heart.grid.toWorld(Vector(s[0], s[1], s[2]));
-    if (atBase(x, heart.grid, axis)) heart[v] = kBeyondBase;
+    if (atBase(centreOf(heart.grid, v), heart.grid, axis)) heart[v] = kBeyondBase;
   });
 }
 
@@ -204,13 +202,12 @@ std::vector<std::vector<Point>> ringEnds(const WallThickness& wall, const Volume
   }
   for (std::size_t v = 0; v < marked.size(); ++v) {
     if (marked[v] != kWall) continue;
-    const auto s = grid.subscripts(v);
+    const auto k = static_cast<std::size_t>(grid.subscripts(v)[2]);
+    const auto near = grid.neighbours(v);
     for (int d = 0; d < 4; ++d) {
-      auto q = s;
-      q[d / 2] += d % 2 ? 1 : -1;
-      if (!grid.contains(q[0], q[1], q[2]) || marked(q[0], q[1], q[2]) != kBeyondBase) continue;
-      ends[static_cast<std::size_t>(s[2])].push_back(
-          grid.toWorld(0.5 * Vector(s[0] + q[0], s[1] + q[1], 2 * s[2])));
+      if (near[d] >= 0 && marked[near[d]] == kBeyondBase) {
+        ends[k].push_back(between(grid, v, near[d]));
+      }
     }
   }
   return ends;
@@ -253,9 +250,7 @@ Volume<std::uint8_t> reasonsOf(const WallThickness& wall, const Volume<Label>& h
     LeftOut why = LeftOut::Unreached;
     if (wall.bySlice && kind == SliceKind::Cap) {
       // Wall without cavity is the apex, or what an oblique base leaves of a ring.
-      const auto s = heart.grid.subscripts(v);
-      const double share = axis.share(heart.grid.toWorld(Vector(s[0], s[1], s[2])));
-      why = share > 0.5 ? LeftOut::Cap : LeftOut::Valve;
+      why = axis.share(centreOf(heart.grid, v)) > 0.5 ? LeftOut::Cap : LeftOut::Valve;
     }
     if (wall.bySlice && kind == SliceKind::Valve) why = LeftOut::Valve;
     reasons[v] = static_cast<std::uint8_t>(why);

@@ -115,7 +115,7 @@ void showThickness(ResultFolder& results, const std::vector<Hemisphere>& all) {
     const auto shape = std::ranges::find(shapes, "inflated", &report::EvolutionShape::name);
     meshes.push_back({shape->positions, all[h].white.faces});
     const auto from = all[h].side == "right" ? report::ViewName::Right : report::ViewName::Left;
-    cameras.push_back(report::cameraFor(meshes.back(), from, size.width, size.height));
+    cameras.push_back(report::cameraFor(meshes.back().positions, from, size.width, size.height));
     half = std::max(half, cameras.back().halfHeight);
   }
   report::ReportGlance glance{

@@ -33,12 +33,12 @@ struct Camera {
   double halfHeight = 100;           ///< half of what the picture's height shows, mm
 };
 
-/// A camera that shows all of a mesh, with a small margin.
+/// A camera that shows all of some places, with a small margin.
 /// @param towards  direction of sight, any length > 0
 /// @param up       what points upwards in the picture; replaced where it is parallel to `towards`
-[[nodiscard]] Camera cameraTowards(const TriangleMesh& mesh, const Vector& towards,
-                                   const Vector& up, int width, int height);
-[[nodiscard]] Camera cameraFor(const TriangleMesh& mesh, ViewName view, int width, int height);
+[[nodiscard]] Camera cameraTowards(const Positions& places, const Vector& towards, const Vector& up,
+                                   int width, int height);
+[[nodiscard]] Camera cameraFor(const Positions& places, ViewName view, int width, int height);
 
 struct SurfacePictureOptions {
   int width = 1200;

@@ -72,9 +72,6 @@ struct TopologyResult {
 /// Euler characteristic of the boundary between positive and negative voxels.
 [[nodiscard]] std::int64_t boundaryEulerCharacteristic(const LevelSet& level);
 
-/// Distance from each voxel's centre to the nearest voxel with mask == target, mm; 0 on those.
-[[nodiscard]] Volume<float> distanceTo(const Volume<std::uint8_t>& mask, std::uint8_t target);
-
 /// Share of a surface's area that lies between voxels of which the correction changed one.
 /// @param mesh  boundary of the positive voxels of `after`, mm
 [[nodiscard]] double correctedShare(const LevelSet& before, const LevelSet& after,

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Describe.h"
-#include "Explica/Core/Volume.h"
+#include "Explica/Core/VoxelSets.h"
 #include "Explica/Harmonic/Annulus.h"
 
 #include <array>
