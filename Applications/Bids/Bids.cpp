@@ -235,7 +235,7 @@ Termination doParticipants(Context& context, const BidsSettings& s) {
                                provenance::software().version);
   }
   Termination worst = Termination::NotRun;
-  int done = 0;
+  std::size_t done = 0;
   std::vector<std::string> failed, interrupted;
   for (const study::Participant& participant : participants) {
     std::map<fs::path, std::string> toKeep;  // of both hemispheres: they share steps
@@ -259,14 +259,8 @@ Termination doParticipants(Context& context, const BidsSettings& s) {
   context.result("hemispheres_failed", failed.size());
   context.result("failed", Json(failed));
   context.result("interrupted", Json(interrupted));
-  if (done == 0 && interrupted.empty() && !failed.empty()) {
-    throw InvalidInput(s.dataset + ": all " + std::to_string(failed.size()) +
-                       " hemispheres failed; each run's problem.txt says why");
-  }
-  if (failed.empty()) return worst;
-  context.warn(std::to_string(failed.size()) + " of " + std::to_string(failed.size() + done) +
-               " hemispheres failed: " + joined(failed));
-  return !reachedGoal(worst) ? worst : Termination::Stalled;
+  return endOfRuns(context, s.dataset, "hemispheres", done + failed.size() + interrupted.size(),
+                   failed, worst);
 }
 
 /// How the study came about, in the words of BIDS-Prov.

@@ -103,11 +103,8 @@ Shown shownOf(const io::LoadedSurface& loaded, const std::string& file) {
 }
 
 bool isFolding(const std::string& file, const std::string& name) {
-  for (const std::string& text : {std::filesystem::path(file).filename().string(), name}) {
-    if (text.find("curv") != std::string::npos || text.find("sulc") != std::string::npos)
-      return true;
-  }
-  return false;
+  const std::string text = std::filesystem::path(file).filename().string() + "\n" + name;
+  return text.find("curv") != std::string::npos || text.find("sulc") != std::string::npos;
 }
 
 /// Whether vertex data are of a surface's hemisphere and have its vertices.
@@ -226,21 +223,10 @@ void paint(Shown& shown, const std::optional<report::ColourScale>& scale) {
 }
 
 report::ViewName viewOf(FigureSide side, bool right) {
-  using report::ViewName;
-  switch (side) {
-    case FigureSide::Lateral:
-      return right ? ViewName::Right : ViewName::Left;
-    case FigureSide::Medial:
-      return right ? ViewName::Left : ViewName::Right;
-    case FigureSide::Dorsal:
-      return ViewName::Top;
-    case FigureSide::Ventral:
-      return ViewName::Bottom;
-    case FigureSide::Frontal:
-      return ViewName::Front;
-    default:
-      return ViewName::Back;
-  }
+  using enum report::ViewName;
+  constexpr std::array ofLeft = {Left, Right, Top, Bottom, Front, Back};  // in FigureSide's order
+  constexpr std::array ofRight = {Right, Left, Top, Bottom, Front, Back};
+  return (right ? ofRight : ofLeft)[static_cast<std::size_t>(side)];
 }
 
 /// Places of a flat map's vertices on a folded surface of the figure; none without one of its mesh.

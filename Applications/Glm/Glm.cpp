@@ -138,29 +138,22 @@ statistics::Levels levelsIn(const std::string& column, const Observations& o) {
   return statistics::levelsOf(o.about, column, rows);
 }
 
-std::vector<int> blocksOf(const GlmSettings& s, const Observations& o,
-                          const statistics::Design& design) {
-  return s.blocks ? levelsIn(*s.blocks, o).of : design.groups;
-}
-
 /// ComBat keeps what the model's own columns explain, which must not be the sites' differences.
 void harmonise(const GlmSettings& s, const Observations& o, const statistics::Design& design,
                Eigen::MatrixXd& values) {
   if (s.site != SiteModel::Combat) return;
   const statistics::Levels sites = levelsIn(s.siteColumn, o);
-  const auto first = static_cast<Eigen::Index>(sites.names.size());
-  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(values.rows(), first);
-  for (Eigen::Index i = 0; i < all.rows(); ++i) all(i, sites.of[static_cast<std::size_t>(i)]) = 1;
   std::vector<std::string> names;
   for (const std::string& site : sites.names) names.push_back(s.siteColumn + "[" + site + "]");
+  std::vector<Eigen::Index> kept;
   for (std::size_t c = 0; c < design.columns.size(); ++c) {
     if (design.columns[c] == "intercept") continue;
-    all.conservativeResize(Eigen::NoChange, all.cols() + 1);
-    all.rightCols(1) = design.matrix.col(static_cast<Eigen::Index>(c));
+    kept.push_back(static_cast<Eigen::Index>(c));
     names.push_back(design.columns[c]);
   }
-  statistics::requireFullRank(all, names);
-  statistics::combat(values, all.rightCols(all.cols() - first), sites.of);
+  const Eigen::MatrixXd covariates = design.matrix(Eigen::all, kept);
+  statistics::requireFullRank(statistics::withSites(sites.of, covariates), names);
+  statistics::combat(values, covariates, sites.of);
 }
 
 statistics::PlaceBlocks planBlocks(const GlmSettings& s, const Observations& o) {
@@ -181,57 +174,56 @@ void sayWhoIsLeftOut(Context& context, const Observations& o, const statistics::
   if (!o.leftOut.empty()) context.warn("in one list only, left out: " + joined(o.leftOut));
 }
 
-/// @return people's values, N x V, if all fit into a block
-Eigen::MatrixXd fit(Context& context, const GlmSettings& s, const Observations& o,
-                    const statistics::PlaceBlocks& blocks, GlmResults& results) {
-  const statistics::PlaceModel model(results.design, results.contrasts);
-  Eigen::MatrixXd all;
+void fit(Context& context, const GlmSettings& s, const Observations& o,
+         const statistics::PlaceBlocks& blocks, GlmResults& r) {
   statistics::forEachBlock(
       blocks, o.reader,
       [&](Eigen::Index first, Eigen::MatrixXd& values) {
-        harmonise(s, o, results.design, values);
-        model.fit(values, first, results.maps);
-        if (blocks.single()) all = std::move(values);
+        harmonise(s, o, r.design, values);
+        statistics::fitPlaces(r.design, r.contrasts, values, first, r.maps);
+        if (blocks.single()) r.values = std::move(values);
       },
       context.monitor());
-  return all;
-}
-
-void measureSmoothness(const Observations& o, const Eigen::MatrixXd& fitted, GlmResults& results) {
   if (!o.surface) return;
-  const auto stored = [&](std::size_t person, std::span<double> values) {
-    const Eigen::VectorXd row = fitted.row(static_cast<Eigen::Index>(person));
-    std::copy(row.begin(), row.end(), values.begin());
-  };
-  const statistics::PersonReader reader =
-      fitted.size() > 0 ? statistics::PersonReader(stored) : o.reader;
-  const auto roughness = statistics::edgeRoughness(results.design.matrix, results.maps.coefficients,
-                                                   o.surface->topology.edges, reader);
-  results.smoothness = statistics::smoothnessOf(*o.surface, roughness);
+  statistics::PersonReader fitted = o.reader;
+  if (r.values.size() > 0) {
+    fitted = [&](std::size_t person, std::span<double> values) {
+      Eigen::Map<Eigen::RowVectorXd>(values.data(), r.values.cols()) = r.values.row(person);
+    };
+  }
+  const auto roughness = statistics::edgeRoughness(r.design.matrix, r.maps.coefficients,
+                                                   o.surface->topology.edges, fitted);
+  r.smoothness = statistics::smoothnessOf(*o.surface, roughness);
 }
 
-bool inferAll(Context& context, const GlmSettings& s, const Observations& o,
-              const Eigen::MatrixXd& fitted, GlmResults& results) {
-  statistics::InferenceOptions options{.clusterP = s.threshold,
-                                       .permutations = s.permutations,
-                                       .seed = static_cast<std::uint64_t>(s.seed),
-                                       .tfce = s.tfce,
-                                       .exchange = s.exchange,
-                                       .blocks = blocksOf(s, o, results.design)};
+/// @return  false if permutations were interrupted
+bool inferAll(Context& context, const GlmSettings& s, const Observations& o, GlmResults& r) {
+  const statistics::InferenceOptions options{
+      .clusterP = s.threshold,
+      .permutations = {.count = s.permutations,
+                       .seed = static_cast<std::uint64_t>(s.seed),
+                       .exchange = s.exchange,
+                       .blocks = s.blocks ? levelsIn(*s.blocks, o).of : r.design.groups,
+                       .tfce = s.tfce}};
   bool complete = true;
-  for (std::size_t k = 0; k < results.contrasts.size(); ++k) {
-    results.inferences.push_back(statistics::infer(
-        results.design, results.contrasts[k], results.maps.contrasts[k],
-        fitted.size() > 0 ? &fitted : nullptr, o.surface ? &*o.surface : nullptr,
-        results.smoothness ? &*results.smoothness : nullptr, options, context.monitor()));
-    complete = complete && !results.inferences.back().interrupted;
+  for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
+    r.inferences.push_back(statistics::infer(
+        r.design, r.contrasts[k], r.maps.contrasts[k], r.values, o.surface ? &*o.surface : nullptr,
+        r.smoothness ? &*r.smoothness : nullptr, options, context.monitor()));
+    complete = complete && !r.inferences.back().interrupted;
+    if (!r.maps.contrasts[k].statistic.array().isNaN().all()) continue;
+    context.warn("contrast '" + r.contrasts[k].name +
+                 "' can be tested nowhere: no degrees of freedom are left for it" +
+                 (r.design.groups.empty()
+                      ? ""
+                      : ", as it varies between groups of people and these are too few"));
   }
   return complete;
 }
 
 /// @return  whether all is written: without the page, whose pictures take seconds, after a stop
 bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
-              const Eigen::MatrixXd& fitted, const GlmResults& results) {
+              const GlmResults& results) {
   auto step = context.step("write");
   writeTextFile(context.output("design.tsv"), designTable(o, results));
   if (o.placeNames.empty())
@@ -242,7 +234,7 @@ bool writeAll(Context& context, const GlmSettings& s, const Observations& o,
   context.results(summaryOf(s, o, results));
   try {
     const StopScope abandoned(&context.monitor());
-    const std::string page = resultPage(s, o, results, fitted.size() > 0 ? &fitted : nullptr);
+    const std::string page = resultPage(s, o, results);
     writeTextFile(context.output("report.html"), page);
   } catch (const Interrupted&) {
     return false;
@@ -267,29 +259,20 @@ Termination run(Context& context, const GlmSettings& s) {
                      std::move(contrasts),
                      statistics::ModelMaps(columns, o.places, count),
                      {},
+                     {},
                      {}};
   bool complete = true;
-  Eigen::MatrixXd fitted;
   {
     auto step = context.step("fit");
-    fitted = fit(context, s, o, blocks, results);
-    measureSmoothness(o, fitted, results);
+    fit(context, s, o, blocks, results);
   }
   const StopScope kept(nullptr);  // models are written without the permutations, too
   {
     auto step = context.step("inference");
-    complete = inferAll(context, s, o, fitted, results);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!results.maps.contrasts[k].statistic.array().isNaN().all()) continue;
-      context.warn("contrast '" + results.contrasts[k].name +
-                   "' can be tested nowhere: no degrees of freedom are left for it" +
-                   (results.design.groups.empty()
-                        ? ""
-                        : ", as it varies between groups of people and these are too few"));
-    }
+    complete = inferAll(context, s, o, results);
     if (!complete) step.termination(causeOf(Termination::Interrupted));
   }
-  complete = writeAll(context, s, o, fitted, results) && complete;
+  complete = writeAll(context, s, o, results) && complete;
   return complete ? Termination::NotRun : Termination::Interrupted;
 }
 

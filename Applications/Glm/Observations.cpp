@@ -5,6 +5,7 @@
 
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/Folders.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/Types.h"
 #include "Explica/Geometry/Fixtures.h"
 #include "Explica/IO/StatedHemisphere.h"
@@ -29,21 +30,13 @@ std::size_t personColumn(const Table& table, const GlmSettings& s) {
   return table.find(s.person).value_or(0);
 }
 
-std::vector<std::string> peopleOf(const Table& table, const GlmSettings& s) {
-  std::vector<std::string> people;
-  for (const auto& row : table.rows) people.push_back(row[personColumn(table, s)]);
-  return people;
-}
-
 /// Files of each person, one for each hemisphere.
 using MapFiles = std::vector<std::vector<fs::path>>;
 
 std::vector<std::string> fileColumns(const Table& list) {
   if (list.find("file")) return {"file"};
-  std::vector<std::string> columns;
-  for (const char* side : {"left", "right"}) {
-    if (list.find(side)) columns.emplace_back(side);
-  }
+  std::vector<std::string> columns = {"left", "right"};
+  std::erase_if(columns, [&](const std::string& side) { return !list.find(side); });
   if (columns.empty()) {
     throw InvalidInput("'" + list.name +
                        "': a list of maps has a column file, or columns left and right");
@@ -70,10 +63,9 @@ io::VertexMap mapIn(const fs::path& file, Eigen::Index vertices, const std::stri
   if (maps.size() == 1) return std::move(maps.front());
   const auto named = std::ranges::find(maps, response, &io::VertexMap::name);
   if (named != maps.end()) return std::move(*named);
-  std::string names;
-  for (const io::VertexMap& map : maps) names += (names.empty() ? "" : ", ") + map.name;
   throw InvalidInput("'" + file.string() + "': holds " + std::to_string(maps.size()) + " maps (" +
-                     names + "); --model says by its left side which is meant");
+                     joined(maps, ", ", [](const io::VertexMap& map) { return map.name; }) +
+                     "); --model says by its left side which is meant");
 }
 
 /// Reads one person's maps one after the other.
@@ -122,8 +114,8 @@ void layOut(Context& context, const GlmSettings& s, const Table& list, const Map
       const std::string wanted = sideOf(columns[h], side.structure);
       if (statesSide(side.structure) && side.structure != wanted) {
         throw InvalidInput("'" + s.surfaces[h] + "' is of the other hemisphere than the column '" +
-                           columns[h] + "' of '" + list.name + "'; give --surface in the order " +
-                           "left, right");
+                           columns[h] + "' of '" + list.name +
+                           "'; give --surface in the order left, right");
       }
       whole = h == 0 ? loaded.mesh : geometry::joined(whole, loaded.mesh);
     }
@@ -158,9 +150,7 @@ void readMask(const GlmSettings& s, Observations& o) {
   for (std::size_t h = 0; h < s.masks.size(); ++h) {
     const MapSide& side = o.hemispheres[h];
     const Eigen::VectorXd inside = io::readVertexNumbers(s.masks[h], side.count);
-    for (Eigen::Index v = 0; v < side.count; ++v) {
-      o.mask[static_cast<std::size_t>(side.first + v)] = inside[v] != 0;
-    }
+    for (Eigen::Index v = 0; v < side.count; ++v) o.mask[side.first + v] = inside[v] != 0;
   }
 }
 
@@ -184,18 +174,17 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
     const auto is = [&](const std::string& pattern) {
       return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
     };
-    bool wanted = false;
-    if (!s.columns.empty()) {
-      wanted = std::any_of(s.columns.begin(), s.columns.end(), is);
-    } else if (table.find(formula.response)) {
-      wanted = name == formula.response;
-    } else {
-      wanted = c != personColumn(table, s) && statistics::isNumeric(table, c) &&
-               std::none_of(formula.terms.begin(), formula.terms.end(), [&](const auto& term) {
-                 return std::find(term.begin(), term.end(), name) != term.end();
-               });
+    const auto unused = [&] {
+      return c != personColumn(table, s) && statistics::isNumeric(table, c) &&
+             std::ranges::none_of(formula.terms, [&](const auto& term) {
+               return std::ranges::find(term, name) != term.end();
+             });
+    };
+    if (!s.columns.empty()             ? std::ranges::any_of(s.columns, is)
+        : table.find(formula.response) ? name == formula.response
+                                       : unused()) {
+      columns.push_back(c);
     }
-    if (wanted) columns.push_back(c);
   }
   if (columns.empty()) {
     throw InvalidInput("'" + table.name +
@@ -214,7 +203,8 @@ std::vector<std::size_t> regionColumns(const Table& table, const GlmSettings& s)
 
 /// The people of a list with their rows of participants.tsv; which rows of the list they are.
 std::vector<std::size_t> findPeople(const Table& list, const GlmSettings& s, Observations& o) {
-  const auto all = peopleOf(list, s);
+  std::vector<std::string> all;
+  for (const auto& row : list.rows) all.push_back(row[personColumn(list, s)]);
   const Table about = s.table ? statistics::readTable(*s.table) : list;
   auto joined = statistics::joinPeople(all, list.name, about, about.columns[personColumn(about, s)],
                                        s.subset);
@@ -234,8 +224,7 @@ void observeRegions(const GlmSettings& s, const Table& table, Observations& o) {
   o.mask.assign(columns.size(), true);
   o.reader = [values = statistics::numbersIn(table, rows, columns)](std::size_t person,
                                                                     std::span<double> out) {
-    const Eigen::VectorXd row = values.row(static_cast<Eigen::Index>(person));
-    std::copy(row.begin(), row.end(), out.begin());
+    Eigen::Map<Eigen::RowVectorXd>(out.data(), values.cols()) = values.row(person);
   };
 }
 
@@ -293,17 +282,15 @@ Observations readObservations(Context& context, const GlmSettings& s) {
 
 void keepPeople(Observations& o, const std::vector<std::size_t>& rows) {
   if (rows.size() == o.people.size()) return;
-  Observations kept = o;
-  kept.people.clear();
-  kept.about.rows.clear();
-  for (const std::size_t row : rows) {
-    kept.people.push_back(o.people[row]);
-    kept.about.rows.push_back(o.about.rows[row]);
+  for (std::size_t n = 0; n < rows.size(); ++n) {  // ascending
+    o.people[n] = o.people[rows[n]];
+    o.about.rows[n] = o.about.rows[rows[n]];
   }
-  kept.reader = [reader = o.reader, rows](std::size_t person, std::span<double> values) {
+  o.people.resize(rows.size());
+  o.about.rows.resize(rows.size());
+  o.reader = [reader = o.reader, rows](std::size_t person, std::span<double> values) {
     reader(rows[person], values);
   };
-  o = std::move(kept);
 }
 
 }  // namespace explica::app

@@ -39,8 +39,8 @@ struct Axis {
 Axis axisOf(const Observations& o, const GlmResults& r, const statistics::Contrast& contrast) {
   const statistics::Factor* factor = nullptr;
   for (std::size_t c = 0; c < r.design.columns.size(); ++c) {
-    if (contrast.weights.row(static_cast<Eigen::Index>(c)).isZero()) continue;
-    for (const std::string& name : r.design.terms[static_cast<std::size_t>(r.design.termOf[c])]) {
+    if (contrast.weights.row(c).isZero()) continue;
+    for (const std::string& name : r.design.terms[r.design.termOf[c]]) {
       for (const auto& f : r.design.factors) {
         if (f.name == name && (factor == nullptr || f.levels.empty())) factor = &f;
       }
@@ -89,10 +89,7 @@ std::vector<int> nearestPlaces(const Eigen::Ref<const Positions>& vertices,
   std::vector<int> nearest(static_cast<std::size_t>(vertices.rows()));
   parallelFor(nearest.size(), 64, [&](std::size_t v) {
     Eigen::Index best = 0;
-    (at.rowwise() - vertices.row(static_cast<Eigen::Index>(v)))
-        .rowwise()
-        .squaredNorm()
-        .minCoeff(&best);
+    (at.rowwise() - vertices.row(v)).rowwise().squaredNorm().minCoeff(&best);
     nearest[v] = static_cast<int>(best);
   });
   return nearest;
@@ -114,7 +111,7 @@ void addPlace(const Eigen::VectorXd& values, Json& low, Json& high, std::string&
       continue;
     }
     const double share = most > least ? (value - least) / (most - least) : 0;
-    digits += kDigits[static_cast<std::size_t>(std::lround(share * last))];
+    digits += kDigits[std::lround(share * last)];
   }
 }
 
@@ -126,8 +123,7 @@ Json axisJson(const std::string& contrast, const Axis& axis) {
   return {{"contrast", contrast}, {"name", axis.name}, {"levels", axis.levels}, {"x", x}};
 }
 
-Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values,
-            const std::vector<NamedPlace>& named) {
+Json dataOf(const Observations& o, const GlmResults& r, const std::vector<NamedPlace>& named) {
   const double share =
       kCharacters /
       static_cast<double>(o.people.size() * std::max<std::size_t>(1, o.hemispheres.size()));
@@ -142,20 +138,17 @@ Json dataOf(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& v
     const auto vertices = o.surface->mesh.positions.middleRows(side.first, side.count);
     views[side.structure] = {{"first", first}, {"place", nearestPlaces(vertices, places)}};
     first += static_cast<int>(places.size());
-    for (const Eigen::Index v : places) addPlace(values.col(side.first + v), low, high, digits);
+    for (const Eigen::Index v : places) addPlace(r.values.col(side.first + v), low, high, digits);
   }
   data["named"] = Json::array();
   for (const NamedPlace& one : named) {
     data["named"].push_back(
         {{"title", nameOfPlace(o, one.place)}, {"contrast", one.contrast}, {"place", low.size()}});
-    addPlace(values.col(one.place), low, high, digits);
+    addPlace(r.values.col(one.place), low, high, digits);
   }
   for (std::size_t i = 0; i < o.people.size(); ++i) reports.push_back(reportOf(o, i));
-  data["reports"] = reports;
-  data["views"] = views;
-  data["low"] = low;
-  data["high"] = high;
-  data["values"] = digits;
+  data.update(Json{
+      {"reports", reports}, {"views", views}, {"low", low}, {"high", high}, {"values", digits}});
   data["axes"] = Json::array();
   for (const auto& contrast : r.contrasts) {
     data["axes"].push_back(axisJson(contrast.name, axisOf(o, r, contrast)));
@@ -239,9 +232,9 @@ constexpr const char* kScript = R"js(</script>
 
 }  // namespace
 
-std::string placePlot(const Observations& o, const GlmResults& r, const Eigen::MatrixXd& values,
+std::string placePlot(const Observations& o, const GlmResults& r,
                       const std::vector<NamedPlace>& named) {
-  return kSection + scriptSafe(provenance::textOf(dataOf(o, r, values, named))) + kScript;
+  return kSection + scriptSafe(provenance::textOf(dataOf(o, r, named))) + kScript;
 }
 
 }  // namespace explica::app

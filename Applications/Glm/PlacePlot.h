@@ -18,9 +18,7 @@ struct NamedPlace {
 /// Each person at a place, as a section with script and data: at those that are named, and at
 /// whatever place is clicked on the page's surface.  Of so many people that their values at all
 /// places would make a page of more than some MB, of places evenly among them.
-/// @param values  N x V
 [[nodiscard]] std::string placePlot(const Observations& observations, const GlmResults& results,
-                                    const Eigen::MatrixXd& values,
                                     const std::vector<NamedPlace>& named);
 
 }  // namespace explica::app

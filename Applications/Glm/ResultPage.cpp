@@ -24,17 +24,12 @@ constexpr Colour kBelow = {0.78F, 0.78F, 0.78F};      // below the threshold
 constexpr int kMapsAtFullWidth = 3;  // of a page; more are drawn smaller, for as many pixels
 constexpr int kFullWidth = 420;      // of a view, pixels
 
-struct Size {
-  int width, height;
-};
-
-/// Of a view: all pictures of a page have as many pixels together, whatever the number of
-/// contrasts.
-Size sizeOfViews(const GlmResults& r) {
+/// All pictures of a page have as many pixels together, whatever the number of contrasts.
+report::SurfacePictureOptions sizeOfViews(const GlmResults& r) {
   const double maps = 1 + 3 * static_cast<double>(r.contrasts.size());
   const double share = std::sqrt(std::min(1.0, kMapsAtFullWidth / maps));
   const int width = static_cast<int>(kFullWidth * share);
-  return {width, width * 3 / 4};
+  return {.width = width, .height = width * 3 / 4};
 }
 
 TriangleMesh meshOf(const Observations& o, const MapSide& h) {
@@ -65,31 +60,40 @@ std::vector<ShownSide> sidesOf(const Observations& o) {
   return sides;
 }
 
+/// A map of the model as the page shows it: in pictures, and on the hemispheres that turn.
+struct ShownMap {
+  std::string contrast;  ///< empty of the mean of all people
+  std::string title, caption;
+  Eigen::VectorXd values;
+  report::ColourScale scale;
+  double threshold = 0;  ///< smaller values are not shown
+};
+
 /// Lateral and medial pictures of each hemisphere.
-report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const Eigen::VectorXd& values,
-                            const report::ColourScale& scale, double threshold, Size pixels) {
+report::ReportViews viewsOf(const std::vector<ShownSide>& sides, const ShownMap& map,
+                            const report::SurfacePictureOptions& size) {
   report::ReportViews views;
-  views.scale = scale;
-  report::SurfacePictureOptions size{.width = pixels.width, .height = pixels.height};
+  views.title = map.title;
+  views.caption = map.caption;
+  views.scale = map.scale;
   for (const ShownSide& side : sides) {
     std::vector<Colour> colours;
     for (Eigen::Index v = 0; v < side.hemisphere->count; ++v) {
-      const double value = values[side.hemisphere->first + v];
-      colours.push_back(std::isnan(value)             ? kNotTested
-                        : std::abs(value) < threshold ? kBelow
-                                                      : scale(value));
+      const double value = map.values[side.hemisphere->first + v];
+      colours.push_back(std::isnan(value)                 ? kNotTested
+                        : std::abs(value) < map.threshold ? kBelow
+                                                          : map.scale(value));
     }
     const report::SurfaceScene scene(side.inflated);
     const bool right = side.hemisphere->structure == "CortexRight";
-    const std::string name = right                                        ? "right"
-                             : side.hemisphere->structure == "CortexLeft" ? "left"
-                                                                          : "";
+    const bool left = side.hemisphere->structure == "CortexLeft";
+    const std::string name = right ? "right, " : left ? "left, " : "";
     for (const bool lateral : {true, false}) {
       const auto from = lateral == right ? report::ViewName::Right : report::ViewName::Left;
-      views.views.push_back({name + (name.empty() ? "" : ", ") + (lateral ? "lateral" : "medial"),
-                             scene.render(report::cameraFor(side.inflated.positions, from,
-                                                            pixels.width, pixels.height),
-                                          colours, report::Filling::Smooth, size)});
+      views.views.push_back(
+          {name + (lateral ? "lateral" : "medial"),
+           scene.render(report::cameraFor(side.inflated.positions, from, size.width, size.height),
+                        colours, report::Filling::Smooth, size)});
     }
   }
   return views;
@@ -105,66 +109,59 @@ report::ColourScale symmetric(const Eigen::VectorXd& values, const std::string& 
   return {report::ColourMap::Diverging, -most, most, title, ""};
 }
 
-Eigen::VectorXd meanOf(const GlmResults& r) {
+/// The mean of all people, and of each contrast effect and statistic, the latter thresholded, too.
+std::vector<ShownMap> mapsOf(const GlmResults& r) {
   // Other columns are centred or zero at the first levels; the mean over people is X's mean row.
-  return (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
-}
-
-void addViews(const std::vector<ShownSide>& sides, const GlmResults& r,
-              report::ReportContent& page) {
-  if (sides.empty()) return;
-  const Size size = sizeOfViews(r);
-  const Eigen::VectorXd mean = meanOf(r);
-  auto views = viewsOf(sides, mean, report::scaleFor(mean, "mean", ""), 0, size);
-  views.id = "mean";
-  views.title = "Mean of all people";
-  views.caption = "Fitted at the people's mean covariates. Dark grey: not analysed.";
-  page.views.push_back(std::move(views));
+  const Eigen::VectorXd mean = (r.design.matrix.colwise().mean() * r.maps.coefficients).transpose();
+  std::vector<ShownMap> all = {{"", "Mean of all people",
+                                "Fitted at the people's mean covariates. Dark grey: not analysed.",
+                                mean, report::scaleFor(mean, "mean", "")}};
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     const auto& maps = r.maps.contrasts[k];
     const std::string& name = r.contrasts[k].name;
     const bool t = r.contrasts[k].isT();
-    const auto add = [&](const std::string& what, const Eigen::VectorXd& values, double threshold,
-                         const std::string& caption) {
-      auto shown = viewsOf(sides, values, symmetric(values, what), threshold, size);
-      shown.id = fileName(name) + "-" + std::to_string(page.views.size());
-      shown.title = name + ": " + what;
-      shown.caption = caption;
-      page.views.push_back(std::move(shown));
-    };
-    add(t ? "effect" : "partial R\u00b2", maps.effect, 0, "Not thresholded.");
-    add(t ? "t" : "F", maps.statistic, 0, "Not thresholded.");
-    add(t ? "t" : "F", maps.statistic, r.inferences[k].threshold,
-        "Where |" + std::string(t ? "t" : "F") + "| is at least " +
-            numberText(r.inferences[k].threshold, 3) +
-            ", the threshold that forms clusters; this alone makes nothing significant.");
+    const std::string effect = t ? "effect" : "partial R\u00b2", statistic = t ? "t" : "F";
+    const double least = r.inferences[k].threshold;
+    all.push_back({name, name + ": " + effect, "Not thresholded.", maps.effect,
+                   symmetric(maps.effect, effect)});
+    all.push_back({name, name + ": " + statistic, "Not thresholded.", maps.statistic,
+                   symmetric(maps.statistic, statistic)});
+    all.push_back(all.back());
+    all.back().threshold = least;
+    all.back().caption = "Where |" + statistic + "| is at least " + numberText(least, 3) +
+                         ", the threshold that forms clusters; this alone makes nothing "
+                         "significant.";
+  }
+  return all;
+}
+
+void addViews(const std::vector<ShownSide>& sides, const std::vector<ShownMap>& maps,
+              const report::SurfacePictureOptions& size, report::ReportContent& page) {
+  if (sides.empty()) return;
+  for (const ShownMap& map : maps) {
+    report::ReportViews views = viewsOf(sides, map, size);
+    views.id = map.contrast.empty()
+                   ? "mean"
+                   : fileName(map.contrast) + "-" + std::to_string(page.views.size());
+    page.views.push_back(std::move(views));
   }
 }
 
 /// The hemispheres that turn, inflated or as they are, with the maps of all contrasts.
-void addMaps(const std::vector<ShownSide>& sides, const GlmResults& r,
+void addMaps(const std::vector<ShownSide>& sides, const std::vector<ShownMap>& maps,
              report::ReportContent& page) {
   for (const ShownSide& side : sides) {
     report::Evolution view = report::evolutionOf({side.mesh});
     view.shapes = {{"inflated", side.inflated.positions}, {"as it is", {}}};
     view.title = side.hemisphere->structure;
     view.scene = "Cortex";
-    const auto add = [&](const Eigen::VectorXd& values, const report::ColourScale& scale) {
-      view.maps.push_back({values.segment(side.hemisphere->first, side.hemisphere->count), scale});
-    };
-    const Eigen::VectorXd mean = meanOf(r);
-    add(mean, report::scaleFor(mean, "mean", ""));
-    for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
-      const auto& maps = r.maps.contrasts[k];
-      const bool t = r.contrasts[k].isT();
-      const std::string name = r.contrasts[k].name + ", ", statistic = name + (t ? "t" : "F");
-      const double least = r.inferences[k].threshold;  // that forms clusters
-      const auto scale = symmetric(maps.statistic, statistic);
-      add(maps.effect, symmetric(maps.effect, name + (t ? "effect" : "partial R\u00b2")));
-      add(maps.statistic, scale);
-      auto beyond = scale;
-      beyond.title = statistic + " beyond " + numberText(least, 3);
-      add((maps.statistic.array().abs() < least).select(kNaN, maps.statistic), beyond);
+    for (const ShownMap& map : maps) {
+      report::ColourScale scale = map.scale;
+      if (!map.contrast.empty()) scale.title = map.contrast + ", " + scale.title;
+      if (map.threshold > 0) scale.title += " beyond " + numberText(map.threshold, 3);
+      const Eigen::VectorXd shown =
+          (map.values.array().abs() < map.threshold).select(kNaN, map.values);
+      view.maps.push_back({shown.segment(side.hemisphere->first, side.hemisphere->count), scale});
     }
     page.evolutions.push_back(std::move(view));
   }
@@ -196,15 +193,14 @@ std::vector<NamedPlace> namedPlaces(const Observations& o, const GlmResults& r) 
 }
 
 report::ReportTable clustersOf(const Observations& o, const GlmResults& r, std::size_t k) {
-  report::ReportTable table;
-  table.id = "clusters-" + fileName(r.contrasts[k].name);
-  table.title = r.contrasts[k].name + ": clusters";
-  table.caption =
+  report::ReportTable table{
+      "clusters-" + fileName(r.contrasts[k].name),
+      r.contrasts[k].name + ": clusters",
       "P is family-wise and two-sided for t: of the peak, the extent and the mass by permutation, "
-      "then by random field theory. All are in clusters.tsv.";
-  table.columns = {"place of the peak", "t or F",         "effect",   "area, mm²",
-                   "vertices",          "P peak",         "P extent", "P mass",
-                   "P field, peak",     "P field, extent"};
+      "then by random field theory. All are in clusters.tsv.",
+      {"place of the peak", "t or F", "effect", "area, mm²", "vertices", "P peak", "P extent",
+       "P mass", "P field, peak", "P field, extent"},
+      {}};
   for (const auto& c : r.inferences[k].clusters) {
     if (table.rows.size() == 40) break;
     table.rows.push_back(
@@ -217,11 +213,11 @@ report::ReportTable clustersOf(const Observations& o, const GlmResults& r, std::
 }
 
 report::ReportTable regionsOf(const Observations& o, const GlmResults& r, std::size_t k) {
-  report::ReportTable table;
-  table.id = "regions-" + fileName(r.contrasts[k].name);
-  table.title = r.contrasts[k].name + ": regions of the smallest P";
-  table.caption = "All regions are in regions.tsv.";
-  table.columns = {"region", "effect", "standard error", "t or F", "P", "q"};
+  report::ReportTable table{"regions-" + fileName(r.contrasts[k].name),
+                            r.contrasts[k].name + ": regions of the smallest P",
+                            "All regions are in regions.tsv.",
+                            {"region", "effect", "standard error", "t or F", "P", "q"},
+                            {}};
   for (const Eigen::Index v : placesToName(o, r, k)) {
     const auto& m = r.maps.contrasts[k];
     table.rows.push_back({regionOf(o, v), numberText(m.effect[v], 4), numberText(m.error[v], 3),
@@ -246,8 +242,7 @@ void addFindings(const GlmSettings& s, const Observations& o, const GlmResults& 
         "FWHM of the residuals along the surface, estimated from them.");
   }
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
-    const auto& found = r.inferences[k];
-    const auto below = (found.q.array() < 0.05).count();
+    const auto below = (r.inferences[k].q.array() < 0.05).count();
     add(r.contrasts[k].name + ": places of q < 0.05", "", std::to_string(below),
         "False discovery rate over all places of this contrast.");
   }
@@ -281,26 +276,25 @@ void addFlags(const GlmSettings& s, const Observations& o, const GlmResults& r,
 
 }  // namespace
 
-std::string resultPage(const GlmSettings& settings, const Observations& o, const GlmResults& r,
-                       const Eigen::MatrixXd* values) {
+std::string resultPage(const GlmSettings& settings, const Observations& o, const GlmResults& r) {
   report::ReportContent page;
   page.title = "Group statistics: " + settings.model;
   addFlags(settings, o, r, page);
   addFindings(settings, o, r, page);
   const std::vector<ShownSide> sides = sidesOf(o);
-  addMaps(sides, r, page);
-  addViews(sides, r, page);
+  const std::vector<ShownMap> maps = mapsOf(r);
+  addMaps(sides, maps, page);
+  addViews(sides, maps, sizeOfViews(r), page);
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     page.tables.push_back(o.surface ? clustersOf(o, r, k) : regionsOf(o, r, k));
   }
   std::string html = report::reportPage(page);
-  if (values == nullptr) return html;
+  if (r.values.size() == 0) return html;
   // Beside the surface that turns, which says where it is clicked, or the numbers.
   const std::string ending = "</section>";
   const std::size_t beside =
       html.find(o.surface ? "<section id=\"view3d\"" : "<section id='numbers'");
-  return html.insert(html.find(ending, beside) + ending.size(),
-                     placePlot(o, r, *values, namedPlaces(o, r)));
+  return html.insert(html.find(ending, beside) + ending.size(), placePlot(o, r, namedPlaces(o, r)));
 }
 
 }  // namespace explica::app

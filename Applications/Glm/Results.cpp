@@ -64,30 +64,27 @@ const MapSide& hemisphereOf(const Observations& o, Eigen::Index place) {
 }
 
 std::string regionOf(const Observations& o, Eigen::Index place) {
-  if (!o.placeNames.empty()) return o.placeNames[static_cast<std::size_t>(place)];
+  if (!o.placeNames.empty()) return o.placeNames[place];
   const MapSide& side = hemisphereOf(o, place);
-  return side.regions.empty() ? "" : side.regions[static_cast<std::size_t>(place - side.first)];
+  return side.regions.empty() ? "" : side.regions[place - side.first];
 }
 
 void writeMaps(Context& context, const Observations& o, const GlmResults& r) {
   for (std::size_t k = 0; k < r.contrasts.size(); ++k) {
     const ContrastMaps& maps = r.maps.contrasts[k];
     const Inference& found = r.inferences[k];
-    const std::string name = fileName(r.contrasts[k].name);
-    writeMap(context, o, name, "effect", maps.effect);
-    writeMap(context, o, name, r.contrasts[k].isT() ? "t" : "f", maps.statistic);
-    writeMap(context, o, name, "p", maps.p);
-    writeMap(context, o, name, "q", found.q);
-    if (r.contrasts[k].isT()) {
-      writeMap(context, o, name, "ci95", statistics::confidenceHalfWidth(maps, kConfidence));
-      writeMap(context, o, name, "d", statistics::standardisedEffect(maps, r.maps.variance));
-      writeMap(context, o, name, "partial_r", statistics::partialCorrelation(maps));
+    const bool t = r.contrasts[k].isT();
+    std::vector<std::pair<const char*, Eigen::VectorXd>> all = {
+        {"effect", maps.effect},  {t ? "t" : "f", maps.statistic}, {"p", maps.p},
+        {"q", found.q},           {"p_field", found.field},        {"p_fwe", found.familyWise},
+        {"tfce", found.enhanced}, {"tfce_p_fwe", found.enhancedP}};
+    if (t) {
+      all.emplace_back("ci95", statistics::confidenceHalfWidth(maps, kConfidence));
+      all.emplace_back("d", statistics::standardisedEffect(maps, r.maps.variance));
+      all.emplace_back("partial_r", statistics::partialCorrelation(maps));
     }
-    if (found.field.size() > 0) writeMap(context, o, name, "p_field", found.field);
-    if (found.familyWise.size() > 0) writeMap(context, o, name, "p_fwe", found.familyWise);
-    if (found.enhanced.size() > 0) {
-      writeMap(context, o, name, "tfce", found.enhanced);
-      writeMap(context, o, name, "tfce_p_fwe", found.enhancedP);
+    for (const auto& [kind, values] : all) {
+      if (values.size() > 0) writeMap(context, o, fileName(r.contrasts[k].name), kind, values);
     }
   }
 }
@@ -122,11 +119,11 @@ std::string designTable(const Observations& o, const GlmResults& r) {
   std::string text = row(head);
   for (std::size_t i = 0; i < o.people.size(); ++i) {
     std::vector<std::string> cells = {o.people[i]};
-    for (const double value : r.design.matrix.row(static_cast<Eigen::Index>(i))) {
+    for (const double value : r.design.matrix.row(i)) {
       cells.push_back(numberText(value, 9));
     }
     if (!r.design.groups.empty()) {
-      cells.push_back(r.design.groupNames[static_cast<std::size_t>(r.design.groups[i])]);
+      cells.push_back(r.design.groupNames[r.design.groups[i]]);
     }
     text += row(cells);
   }
@@ -143,12 +140,12 @@ std::string regionTable(const Observations& o, const GlmResults& r) {
                           correlation = statistics::partialCorrelation(maps);
     const bool t = r.contrasts[k].isT();
     for (Eigen::Index v = 0; v < o.places; ++v) {
-      text += row({o.placeNames[static_cast<std::size_t>(v)], r.contrasts[k].name,
-                   std::to_string(r.maps.people[v]), numberText(maps.effect[v]),
-                   numberText(maps.effect[v] - width[v]), numberText(maps.effect[v] + width[v]),
-                   numberText(maps.statistic[v]), numberText(maps.df[v]), numberText(maps.p[v]),
-                   numberText(r.inferences[k].q[v]), numberText(at(r.inferences[k].familyWise, v)),
-                   t ? numberText(d[v]) : "n/a", t ? numberText(correlation[v]) : "n/a"});
+      text += row({o.placeNames[v], r.contrasts[k].name, std::to_string(r.maps.people[v]),
+                   numberText(maps.effect[v]), numberText(maps.effect[v] - width[v]),
+                   numberText(maps.effect[v] + width[v]), numberText(maps.statistic[v]),
+                   numberText(maps.df[v]), numberText(maps.p[v]), numberText(r.inferences[k].q[v]),
+                   numberText(at(r.inferences[k].familyWise, v)), t ? numberText(d[v]) : "n/a",
+                   t ? numberText(correlation[v]) : "n/a"});
     }
   }
   return text;

@@ -18,6 +18,7 @@ struct GlmResults {
   statistics::ModelMaps maps;
   std::vector<statistics::Inference> inferences;  ///< as many as contrasts
   std::optional<statistics::Smoothness> smoothness;
+  Eigen::MatrixXd values;  ///< N x V, what was fitted; empty if it does not fit into memory
 };
 
 /// A model in numbers.

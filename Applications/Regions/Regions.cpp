@@ -44,8 +44,8 @@ void declare(Declaration& d, RegionsSettings& s) {
           "so that the numbers differ; its last three columns are left out. regions.tsv has one "
           "row for each region and measure; NAME_mean is weighted by area, NAME_mean_vertices not. "
           "thickness_mean is weighted by the area of the middle surface, as everywhere, where "
-          "white "
-          "and pial surface are there, and leaves out where thickness is 0, which is not known.")
+          "white and pial surface are there, and leaves out where thickness is 0, which is not "
+          "known.")
       .example("explica regions bert/surf --atlas bert/label/lh.aparc.annot --out tables",
                "The table of FreeSurfer's own surfaces, as tables/lh.aparc.stats and regions.tsv")
       .input("SURFACES", FileKind::Folder, "folder with surfaces and maps of a person", s.folder)
@@ -112,7 +112,6 @@ MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const st
   io::SurfaceReadOptions reading{.space = io::SurfaceSpace::Scanner};
   std::optional<Eigen::Index> count;
   const auto white = file("white", "white.surf.gii"), pial = file("pial", "pial.surf.gii");
-  found.areas = white ? Eigen::VectorXd() : mapOf(file("area", "area.shape.gii"), count);
   if (white) {
     TriangleMesh mesh = io::readSurface(*white, reading).mesh;
     count = mesh.vertexCount();
@@ -132,6 +131,7 @@ MeasuredSide readHemisphere(Context& context, const RegionsSettings& s, const st
     found.curvature = mapOf(file("curv", "curvature.shape.gii"), count);
     if (found.curvature.size() == 0) found.curvature = maps::meanCurvature(mesh);
   } else {
+    found.areas = mapOf(file("area", "area.shape.gii"), count);
     found.curvature = mapOf(file("curv", "curvature.shape.gii"), count);
   }
   if (found.areas.size() == 0) {
@@ -200,11 +200,10 @@ AtlasTable measured(const MeasuredSide& side, const io::LabelMap& labels) {
   for (const io::LabelEntry& entry : labels.table) table.regions.push_back(entry.name);
   const auto areas = momentsOf(labels, side.areas, side.areas);
   for (std::size_t r = 0; r < areas.size(); ++r) {
-    StatsRow row;
-    if (r < table.regions.size()) row.name = table.regions[r];
-    row.vertices = areas[r].count;
-    row.area = areas[r].sum;
-    table.rows.push_back(row);
+    table.rows.emplace_back();
+    if (r < table.regions.size()) table.rows[r].name = table.regions[r];
+    table.rows[r].vertices = areas[r].count;
+    table.rows[r].area = areas[r].sum;
   }
   addMeasure(table, "vertices", "1", areas, [](const auto& r) { return double(r.count); });
   addMeasure(table, "area", "mm^2", areas, [](const auto& r) { return r.sum; });
@@ -224,9 +223,8 @@ AtlasTable measured(const MeasuredSide& side, const io::LabelMap& labels) {
   }
   if (side.curvature.size() > 0) {
     const auto bending = momentsOf(labels, side.curvature.cwiseAbs(), side.areas);
-    for (std::size_t r = 0; r < bending.size(); ++r) {
+    for (std::size_t r = 0; r < bending.size(); ++r)
       table.rows[r].meanCurvature = bending[r].meanOverArea;
-    }
     const auto curvature = momentsOf(labels, side.curvature, side.areas);
     addMoments(table, "curvature", "mm^-1", curvature, curvature);
   }
@@ -249,8 +247,7 @@ std::string longRows(const std::string& person, const std::string& side, const A
   return text;
 }
 
-/// The person's name: what is given, else the subject's folder of FreeSurfer's surf, else the
-/// folder.
+/// What is given, else the name of the subject's folder of FreeSurfer's surf, else of the folder.
 std::string personIn(const RegionsSettings& s) {
   if (s.person) return *s.person;
   fs::path folder = fs::absolute(s.folder).lexically_normal();

@@ -250,11 +250,9 @@ void carry(const std::filesystem::path& path, CarriedFile file, const Weights& w
       break;
     case io::VertexFileKind::Maps:
       for (io::VertexMap& map : file.maps) {
-        if (file.amounts) {
-          map.values = maps::resampleAmounts(weights.amounts, weights.toAreas, map.values);
-        } else {
-          map.values = maps::resampleMaps(weights.maps, map.values);
-        }
+        map.values = file.amounts
+                         ? maps::resampleAmounts(weights.amounts, weights.toAreas, map.values)
+                         : Eigen::VectorXd(maps::resampleMaps(weights.maps, map.values));
       }
       io::writeVertexMaps(path, file.maps, file.structure, faces.rows());
   }
@@ -280,15 +278,13 @@ Termination run(Context& context, const ResampleSettings& s) {
   if (!s.amounts.empty()) {
     weights.amounts = s.method == Adaptive ? weights.maps : weightsBy(Adaptive);
   }
-  std::size_t count = 0;
-  for (const CarriedFile& file : files) {
+  for (std::size_t n = 0; n < files.size(); ++n) {
     checkpoint(context.monitor());
-    context.monitor().progress(static_cast<double>(count) / static_cast<double>(files.size()),
-                               file.output);
-    carry(context.output(file.output), file, weights, target.sphere.mesh.faces);
-    ++count;
+    context.monitor().progress(static_cast<double>(n) / static_cast<double>(files.size()),
+                               files[n].output);
+    carry(context.output(files[n].output), files[n], weights, target.sphere.mesh.faces);
   }
-  context.result("files", count);
+  context.result("files", files.size());
   context.result("vertices_from", static_cast<long>(from.mesh.vertexCount()));
   context.result("vertices_to", static_cast<long>(target.sphere.mesh.vertexCount()));
   return Termination::NotRun;

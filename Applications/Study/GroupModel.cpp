@@ -34,13 +34,12 @@ void smoothSide(Context& context, const GroupSide& side, const People& people, d
     const std::size_t count = std::min(kSmoothedAtOnce, all.size() - first);
     Eigen::MatrixXd maps(side.vertices, count);
     for (std::size_t n = 0; n < count; ++n) {
-      maps.col(static_cast<Eigen::Index>(n)) = readMap(*all[first + n], kThickness, side.vertices);
+      maps.col(n) = readMap(*all[first + n], kThickness, side.vertices);
     }
     maps = maps::smoothMaps(*side.surface, std::move(maps), fwhm, {}, context.monitor());
     for (std::size_t n = 0; n < count; ++n) {
       io::writeGiftiShape(context.output("group/" + smoothName(*all[first + n])),
-                          {{"thickness", "mm", maps.col(static_cast<Eigen::Index>(n))}},
-                          structureOf(side.hemisphere));
+                          {{"thickness", "mm", maps.col(n)}}, structureOf(side.hemisphere));
     }
   }
 }

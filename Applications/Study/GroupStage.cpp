@@ -121,18 +121,11 @@ std::string peopleTable(const std::vector<Member>& members, const AboutPeople& a
                  ? row.state == "done" ? "n/a" : "included: " + study::cellText(row.state)
                  : study::cellText(member.reason));
     for (const char* measure : kMeasures) {
-      const auto value = row.values.find(std::string("group.distance_") + measure);
-      text += "\t" + (value == row.values.end() ? "n/a" : value->second);
+      text += "\t" + study::valueIn(row, std::string("group.distance_") + measure);
     }
     text += cellsOf(about, columns, personOf(row)) + "\n";
   }
   return text;
-}
-
-std::string regionsOf(const fs::path& run) {
-  const fs::path file = run / "regions/regions.tsv", kept = run / study::kKeptName;
-  if (isThere(file)) return fileText(file);
-  return isThere(kept) ? provenance::readJson(kept).value("regions", std::string()) : "";
 }
 
 /// The runs' tables of regions, one below the other.
@@ -141,7 +134,7 @@ std::string regionTable(const std::vector<Member>& members, const AboutPeople& a
   std::string text =
       "participant_id\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\tin_group" + headOf(columns);
   for (const Member& member : members) {
-    std::istringstream table(regionsOf(member.run));
+    std::istringstream table(study::accountOf(member.run).value("regions", std::string()));
     std::string line;
     std::getline(table, line);
     const std::string after = std::string("\t") + (member.reason.empty() ? "yes" : "no") +

@@ -6,7 +6,6 @@
 #include "Explica/Application/ManyRuns.h"
 #include "Explica/Core/Errors.h"
 #include "Explica/Core/StopScope.h"
-#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Software.h"
@@ -139,14 +138,7 @@ Termination run(Context& context, const StudyHeartsSettings& s) {
   context.result("hearts", subjects.size());
   context.result("hearts_failed", failed.size());
   context.result("failed", Json(failed));
-  if (failed.empty()) return worst;
-  if (failed.size() == subjects.size()) {
-    throw InvalidInput(s.dataset + ": all " + std::to_string(failed.size()) +
-                       " hearts failed; each one's problem.txt says why");
-  }
-  context.warn(std::to_string(failed.size()) + " of " + std::to_string(subjects.size()) +
-               " hearts failed: " + joined(failed));
-  return reachedGoal(worst) ? Termination::Stalled : worst;
+  return endOfRuns(context, s.dataset, "hearts", subjects.size(), failed, worst);
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include "KeptRun.h"
 
-#include "Explica/Core/FileText.h"
 #include "Explica/Core/Folders.h"
 #include "Explica/Provenance/Json.h"
 #include "Explica/Provenance/Record.h"
@@ -30,24 +29,6 @@ std::string entityIn(const fs::path& folder, const std::string& begin) {
   if (found.empty()) return "";
   const std::string name = found.front().filename().string();
   return name.substr(begin.size(), name.size() - begin.size() - end.size());
-}
-
-/// Everything of the folder's steps that tables of a study are made of.
-Json accountOf(const fs::path& run, const std::string& key) {
-  Json kept = {{"key", key}, {"run", provenance::readJson(run / "run.json")}};
-  kept["steps"] = Json::object();
-  for (const fs::path& step : foldersOf(run)) {
-    const fs::path summary = step / provenance::kSummaryName;
-    if (!isThere(summary)) continue;
-    kept["steps"][step.filename().string()] = provenance::readJson(summary);
-  }
-  const Json record = provenance::readRecord(run / "register" / provenance::kRecordName);
-  kept["template"] = record["options"]["template"];
-  for (const auto& [name, file] : {std::pair{"surface_regions", "surface/regions.tsv"},
-                                   std::pair{"regions", "regions/regions.tsv"}}) {
-    if (isThere(run / file)) kept[name] = fileText(run / file);
-  }
-  return kept;
 }
 
 }  // namespace
@@ -77,7 +58,11 @@ void keepForGroup(const fs::path& run, const std::string& key) {
   const bool right = name.find("_hemi-R") != std::string::npos;
   const fs::path together = run / (kTogether + maps.entity + ".shape.gii");
   io::writeGiftiShape(together, all, right ? "CortexRight" : "CortexLeft");
-  provenance::writeJson(run / study::kKeptName, accountOf(run, key));
+  Json kept = study::accountOf(run);
+  kept["key"] = key;
+  kept["template"] =
+      provenance::readRecord(run / "register" / provenance::kRecordName)["options"]["template"];
+  provenance::writeJson(run / study::kKeptName, kept);
   const std::set<std::string> stays = {study::kKeptName, together.filename().string(),
                                        "report.html", provenance::kRecordName, "problem.txt"};
   for (const fs::path& path :

@@ -52,7 +52,7 @@ void declare(Declaration& d, StudyParticipantSettings& s) {
 
 /// How the runs so far ended.
 struct Account {
-  int runs = 0;
+  std::size_t runs = 0;
   std::vector<std::string> failed;
   std::string environmentFault;  ///< the machine's fault, which the next run would meet too
   Termination worst = Termination::NotRun;
@@ -124,7 +124,7 @@ Termination run(Context& context, const StudyParticipantSettings& s) {
   for (const study::PlannedSubject& subject : study.subjects) {
     const std::string key = study::keyOf(subject, paths);
     if (s.keep == Keep::Group && allKept(s, subject, key)) {
-      account.runs += static_cast<int>(subject.runs.size());
+      account.runs += subject.runs.size();
       continue;
     }
     if (!dry) study::unsettle(s.out, subject);
@@ -157,9 +157,7 @@ Termination run(Context& context, const StudyParticipantSettings& s) {
                            std::to_string(account.runs) + " runs failed (" +
                            joined(account.failed) + "), as said above" +
                            (dry ? "" : " and in each " + s.out + "/runs/sub-*/problem.txt");
-  if (account.failed.size() == static_cast<std::size_t>(account.runs)) {
-    throw InvalidInput(s.study + ": " + said);
-  }
+  if (account.failed.size() == account.runs) throw InvalidInput(s.study + ": " + said);
   context.warn(said);
   return !reachedGoal(account.worst) ? account.worst : Termination::Stalled;
 }

@@ -12,13 +12,6 @@
 
 namespace explica::app {
 
-/// From where a film is taken.
-struct FilmView {
-  Vector towards;  ///< direction of sight
-  Vector up;
-};
-[[nodiscard]] FilmView filmView(const report::FigureView& view);
-
 /// The surface that an unfolding began with, as its first frame shows it.
 /// @throws InvalidInput  no frames
 [[nodiscard]] TriangleMesh firstFrame(const std::filesystem::path& folder);
@@ -30,17 +23,7 @@ struct FilmView {
 /// @throws InvalidInput  no frames, or a map that does not fit
 [[nodiscard]] std::vector<report::Picture> drawFilm(
     const std::filesystem::path& folder, const std::optional<report::SurfacePaint>& paint,
-    const std::vector<FilmView>& views, int columns, bool focus,
+    std::vector<report::FigureView> views, int columns, bool focus,
     const report::SurfacePictureOptions& options);
-
-/// Whether writeFilm() will be able to.
-/// @throws UsageError        neither .gif nor .mp4 nor .webm
-/// @throws EnvironmentError  ffmpeg is needed and not installed
-void requireFilmFormat(const std::filesystem::path& path);
-
-/// Writes .gif; .mp4 and .webm by ffmpeg.  Whole or not at all.
-/// @throws EnvironmentError  ffmpeg failed
-void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,
-               double framesPerSecond);
 
 }  // namespace explica::app

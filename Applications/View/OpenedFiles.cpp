@@ -12,17 +12,8 @@
 #include <array>
 
 namespace explica::app {
-namespace {
 
 namespace fs = std::filesystem;
-
-viewer::Rgb bytesOf(const report::Colour& colour) {
-  viewer::Rgb rgb;
-  for (int c = 0; c < 3; ++c) rgb[c] = report::encodeSrgb(colour[c]);
-  return rgb;
-}
-
-}  // namespace
 
 bool isVolume(const fs::path& path) {
   const std::string name = path.filename().string();
@@ -37,15 +28,8 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 viewer::WindowLabels windowLabels(const ShownSurface& surface, const fs::path& path) {
-  const io::LabelMap read = readLabelsOn(surface, path);
-  viewer::WindowLabels labels;
+  viewer::WindowLabels labels{readLabelsOn(surface, path), path.string()};
   labels.name = path.filename().string();
-  labels.file = path.string();
-  labels.keys.assign(read.keys.begin(), read.keys.end());
-  for (const io::LabelEntry& entry : read.table) {
-    labels.names.emplace_back(entry.key, entry.name);
-    labels.colours.emplace_back(entry.key, bytesOf(report::colourOfLabel(entry.key, entry.colour)));
-  }
   return labels;
 }
 
@@ -60,31 +44,16 @@ viewer::Opened openForWindow(const fs::path& path, const ShownSurface& surface) 
   }
   if (io::namesLabels(path)) {
     opened.labels.push_back(windowLabels(surface, path));
-    opened.what = name + ": " + counted(opened.labels[0].names.size(), "label");
+    opened.what = name + ": " + counted(opened.labels[0].table.size(), "label");
   } else {
     for (io::VertexMap& map : readMapsOn(surface, path)) {
-      const bool first = opened.maps.empty();
       // Some programs name a map by the path of the file that it came from.
-      opened.maps.push_back({fs::path(map.name).filename().string(), map.unit,
-                             std::move(map.values), first ? path.string() : ""});
+      map.name = fs::path(map.name).filename().string();
+      opened.maps.push_back({std::move(map), opened.maps.empty() ? path.string() : ""});
     }
     opened.what = name + ": " + counted(opened.maps.size(), "map");
   }
   return opened;
-}
-
-viewer::Scale scaleOf(const Eigen::VectorXd& values) {
-  constexpr int kColours = 256;
-  const report::ColourScale chosen = report::scaleFor(values, "", "");
-  viewer::Scale scale;
-  scale.low = chosen.low;
-  scale.high = chosen.high;
-  for (int n = 0; n < kColours; ++n) {
-    scale.colours.push_back(
-        bytesOf(report::colourAt(chosen.map, static_cast<double>(n) / (kColours - 1))));
-  }
-  scale.unknown = bytesOf(report::colourAt(chosen.map, kNaN));
-  return scale;
 }
 
 }  // namespace explica::app

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Report/ColourMap.h"
 #include "Explica/Viewer/Window.h"
 #include "ShownSurface.h"
 
@@ -26,8 +25,5 @@ namespace explica::app {
 /// @throws as readLabelsOn
 [[nodiscard]] viewer::WindowLabels windowLabels(const ShownSurface& surface,
                                                 const std::filesystem::path& path);
-
-/// Colours as in the pictures of `explica view --screenshot`.
-[[nodiscard]] viewer::Scale scaleOf(const Eigen::VectorXd& values);
 
 }  // namespace explica::app

@@ -139,8 +139,8 @@ void addMaps(const fs::path& file, const ShownSurface& surface, viewer::Opened& 
     for (std::size_t v = 0; v < on.size(); ++v) {
       if (!on[v]) maps[n].values[static_cast<Eigen::Index>(v)] = kNaN;
     }
-    opened.maps.push_back({stem + " " + maps[n].name, maps[n].unit, std::move(maps[n].values),
-                           n == 0 ? file.string() : ""});
+    maps[n].name.insert(0, stem + " ");
+    opened.maps.push_back({std::move(maps[n]), n == 0 ? file.string() : ""});
   }
 }
 

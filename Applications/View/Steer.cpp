@@ -102,7 +102,6 @@ void steer(Context& context, const ShownSurface& surface, const io::SurfaceReadO
                                .opened = std::move(opened),
                                .script = options.script};
   viewer::WindowCalls calls;
-  calls.scale = scaleOf;
   calls.open = [&](const std::string& file) { return openForWindow(file, surface); };
   calls.save = [&](const viewer::Session& shown, std::size_t state) {
     return saveState(context, path, window.reading, options.save, shown, state);

@@ -13,6 +13,7 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
+#include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VertexFile.h"
@@ -71,8 +72,8 @@ void declare(Declaration& d, ViewSettings& s) {
       .category("Picture")
       .option("screenshot", "PNG file to write", s.screenshot)
       .option("film",
-              "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
-              "ffmpeg is installed; 800 x 600 pixels if --width and --height do not say",
+              "film to write of a folder of `explica unfold`, a .gif; 800 x 600 pixels if --width "
+              "and --height do not say",
               s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
       .option("map-name", "which of the map file's maps (default: the first)", s.mapName)
@@ -229,7 +230,7 @@ void openWindow(Context& context, const ViewSettings& s, const ShowWindow& show)
     if (file) opened.push_back(openForWindow(*file, start));
   }
   viewer::Opened first;
-  first.maps.push_back({"curvature", "mm^-1", maps::meanCurvature(start.mesh), ""});
+  first.maps.push_back({{"curvature", "mm^-1", maps::meanCurvature(start.mesh)}});
   first.what =
       "1: press C over the middle of a fold. 2: turn the surface, V takes the view as viewpoint. "
       "3: Space unfolds. F1 shows every key.";
@@ -248,19 +249,19 @@ Termination run(Context& context, const ViewSettings& s, const ShowWindow& show)
     throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");
   }
   if (s.film) {
-    requireFilmFormat(*s.film);
+    if (std::filesystem::path(*s.film).extension() != ".gif") {
+      throw UsageError("--film " + *s.film + ": expected a name ending in .gif");
+    }
     const std::filesystem::path folder = s.files.front();
     report::SurfacePictureOptions picture = s.picture;
     if (!context.given("width")) picture.width = 800;
     if (!context.given("height")) picture.height = 600;
     std::optional<report::SurfacePaint> paint;
     if (s.map || s.labels) paint = readPaint(s, {firstFrame(folder), folder.string()});
-    std::vector<FilmView> views;
-    if (s.direction || !s.views.empty()) {
-      for (const report::FigureView& view : viewsOf(s, {})) views.push_back(filmView(view));
-    }
-    writeFilm(*s.film, drawFilm(folder, paint, views, s.columns, s.focus, picture),
-              s.framesPerSecond);
+    std::vector<report::FigureView> views;
+    if (s.direction || !s.views.empty()) views = viewsOf(s, {});
+    const auto frames = drawFilm(folder, paint, std::move(views), s.columns, s.focus, picture);
+    writeTextFile(*s.film, report::encodeGif(frames, s.framesPerSecond));
     context.info("wrote " + *s.film);
   }
   if (s.screenshot) {

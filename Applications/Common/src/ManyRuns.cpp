@@ -3,6 +3,8 @@
 
 #include "Explica/Application/ManyRuns.h"
 
+#include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 #include "Explica/Core/WholeFile.h"
 #include "Explica/Provenance/Digest.h"
 #include "Explica/Provenance/Record.h"
@@ -44,6 +46,18 @@ void sayProblem(Context& context, const std::string& name, const std::filesystem
       folder / "problem.txt",
       provenance::printable(context.isPrivate() ? provenance::textWithoutFolders(why) : why) +
           "\n");
+}
+
+Termination endOfRuns(Context& context, const std::string& data, const char* what, std::size_t all,
+                      const std::vector<std::string>& failed, Termination worst) {
+  if (failed.empty()) return worst;
+  const std::string count = std::to_string(failed.size());
+  if (failed.size() == all) {
+    throw InvalidInput(data + ": all " + count + " " + what +
+                       " failed; each one's problem.txt says why");
+  }
+  context.warn(count + " of " + std::to_string(all) + " " + what + " failed: " + joined(failed));
+  return reachedGoal(worst) ? Termination::Stalled : worst;
 }
 
 void dropSteps(Context& context, const std::string& run) {

@@ -43,8 +43,7 @@ std::string exampleIn(const fs::path& folder, FileKind kind) {
   return found.empty() ? "" : ", such as " + found.front().string();
 }
 
-/// Hashes every file that a declared input names, so that a missing one is reported before any
-/// work.
+/// Hashes every file that a declared input names: a missing one is reported before any work.
 void noteDeclaredInputs(Context& context, const Declaration& declaration) {
   for (const Parameter& parameter : declaration.parameters) {
     if (!parameter.file) continue;
@@ -102,8 +101,7 @@ void recordValues(const Declaration& declaration, const std::set<std::string>& g
   }
 }
 
-/// A sentence that names no input file gets those named that were given: modules see values, not
-/// paths.
+/// A sentence that names no input file gets those that were given: modules see values, not paths.
 std::string withInputNames(const std::string& message, const provenance::Record& record,
                            const std::set<std::string>& given) {
   std::string names;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 namespace explica::pipeline {
@@ -38,6 +39,10 @@ bool isParcel(Label label, bool left) {
   const bool desikan = thousand == (left ? 1 : 2) && within >= 1 && within <= 35;
   const bool destrieux = thousand == (left ? 11 : 12) && within >= 101 && within <= 175;
   return desikan || destrieux;
+}
+
+bool isCortex(Label label, bool left) {
+  return label == (left ? kLeftCortex : kRightCortex) || isParcel(label, left);
 }
 
 enum class Naming {
@@ -81,19 +86,13 @@ NamedLabels nameLabels(const fs::path& file, std::optional<int> dimension = std:
   const auto& found = named.found;
   const auto has = [&](Label label) { return found.count(label) != 0; };
   const auto hasCortex = [&](bool left) {
-    return has(left ? kLeftCortex : kRightCortex) ||
-           std::ranges::any_of(found, [&](Label label) { return isParcel(label, left); });
+    return std::ranges::any_of(found, [&](Label label) { return isCortex(label, left); });
   };
   if (has(2) && has(41) && hasCortex(true) && hasCortex(false)) {
     named.naming = *found.rbegin() > 42 || has(10) ? Naming::FreeSurfer : Naming::Ribbon;
   } else if (has(2) && *found.rbegin() <= 4) {
-    if (has(1) && has(3)) {
-      named.naming = middleClass(labels) == 1 ? Naming::BidsClasses : Naming::ThreeClass;
-    } else if (has(3)) {
-      named.naming = Naming::ThreeClass;
-    } else if (has(1)) {
-      named.naming = Naming::BidsClasses;
-    }
+    const bool fluidLast = has(1) && (!has(3) || middleClass(labels) == 1);
+    if (has(1) || has(3)) named.naming = fluidLast ? Naming::BidsClasses : Naming::ThreeClass;
   }
   return named;
 }
@@ -101,109 +100,78 @@ NamedLabels nameLabels(const fs::path& file, std::optional<int> dimension = std:
 /// Labels of the cortex of one side, as the volume has them.
 std::vector<int> cortexOf(const NamedLabels& labels, bool left) {
   std::vector<int> cortex;
-  for (const Label label : labels.found) {
-    if (label == (left ? kLeftCortex : kRightCortex) || isParcel(label, left)) {
-      cortex.push_back(label);
-    }
-  }
+  std::ranges::copy_if(labels.found, std::back_inserter(cortex),
+                       [&](Label label) { return isCortex(label, left); });
   return cortex;
+}
+
+/// Labels by what they are for one side: the insulated ones touch it where it is cut.
+struct Tissues {
+  std::vector<int> inside, cortex, insulated;
+};
+
+Tissues tissuesIn(const NamedLabels& labels, bool left) {
+  switch (labels.naming) {
+    case Naming::ThreeClass:
+      return {{3}, {2}, {4}};
+    case Naming::BidsClasses:
+      return {{2}, {1}, {}};
+    case Naming::Ribbon:
+      return {{left ? 2 : 41}, {left ? kLeftCortex : kRightCortex}, {left ? 41 : 2}};
+    case Naming::FreeSurfer: {
+      std::vector<int> others = left ? kRightInside : kLeftInside;
+      others.insert(others.end(), kBetween.begin(), kBetween.end());
+      return {left ? kLeftInside : kRightInside, cortexOf(labels, left), others};
+    }
+    default:
+      return {};
+  }
 }
 
 bool wanted(const PlanOptions& options, RunStep step) {
   return options.steps.empty() || std::ranges::find(options.steps, step) != options.steps.end();
 }
 
-std::shared_ptr<Json> values(Json json) {
-  return std::make_shared<Json>(std::move(json));
-}
-
-Json thicknessValues(const fs::path& file, const NamedLabels& labels, bool left) {
-  Json json = {{"SEG", file.string()}};
-  std::vector<int> inside;
-  std::vector<int> insulated;
-  switch (labels.naming) {
-    case Naming::ThreeClass:
-      inside = {3};
-      insulated = {4};
-      json["tissue"] = {2};
-      break;
-    case Naming::BidsClasses:
-      inside = {2};
-      json["tissue"] = {1};
-      break;
-    case Naming::Ribbon:
-      inside = {left ? 2 : 41};
-      insulated = {left ? 41 : 2};
-      json["tissue"] = {left ? kLeftCortex : kRightCortex};
-      break;
-    case Naming::FreeSurfer:
-      // The other hemisphere's inside and the stem touch ours where it is cut.
-      inside = left ? kLeftInside : kRightInside;
-      insulated = left ? kRightInside : kLeftInside;
-      insulated.insert(insulated.end(), kBetween.begin(), kBetween.end());
-      json["tissue"] = cortexOf(labels, left);
-      break;
-    case Naming::Unknown:
-      return json;
-  }
+Json thicknessValues(const std::string& file, const NamedLabels& labels, bool left) {
+  Json json = {{"SEG", file}};
+  if (labels.naming == Naming::Unknown) return json;
+  Tissues tissues = tissuesIn(labels, left);
   const auto absent = [&](int label) {  // a volume yet to be made will hold all
     return !labels.found.empty() && !labels.found.contains(label);
   };
-  inside.erase(std::remove_if(inside.begin(), inside.end(), absent), inside.end());
-  insulated.erase(std::remove_if(insulated.begin(), insulated.end(), absent), insulated.end());
-  json["inner"] = inside;
-  if (!insulated.empty()) json["insulated"] = insulated;
+  std::erase_if(tissues.inside, absent);
+  std::erase_if(tissues.insulated, absent);
+  json["tissue"] = tissues.cortex;
+  json["inner"] = tissues.inside;
+  if (!tissues.insulated.empty()) json["insulated"] = tissues.insulated;
   return json;
 }
 
-Json surfaceValues(const fs::path& file, const NamedLabels& labels, bool left) {
-  Json json = {{"SEG", file.string()}};
-  switch (labels.naming) {
-    case Naming::ThreeClass:
-      break;
-    case Naming::BidsClasses:
-      json["white-label"] = {2};
-      json["grey-label"] = {1};
-      break;
-    case Naming::FreeSurfer:
-      if (!labels.found.contains(left ? kLeftCortex : kRightCortex) ||
-          cortexOf(labels, left).size() > 1) {
-        json["preset"] = "aseg";
-        json["grey-label"] = cortexOf(labels, left);
-      }
-      [[fallthrough]];
-    default:
-      json["hemisphere"] = left ? "L" : "R";
+Json surfaceValues(const std::string& file, const NamedLabels& labels, bool left) {
+  Json json = {{"SEG", file}};
+  if (labels.naming == Naming::ThreeClass) return json;
+  if (labels.naming == Naming::BidsClasses) {
+    json["white-label"] = {2};
+    json["grey-label"] = {1};
+    return json;
   }
-  return json;
-}
-
-Json givenSurfaceValues(const study::SubjectFiles& files, bool left) {
-  const study::HemisphereFiles& given = left ? files.left : files.right;
-  Json json = {{"white-surface", given.white->string()},
-               {"pial-surface", given.pial->string()},
-               {"hemisphere", left ? "L" : "R"}};
-  if (given.mid) json["mid-surface"] = given.mid->string();
-  if (files.layout == study::SubjectLayout::FreeSurfer && files.surfaceVolume) {
-    json["surface-space"] = "tkr";
-    json["fs-volume"] = files.surfaceVolume->string();
+  const std::vector<int> cortex = cortexOf(labels, left);
+  if (labels.naming == Naming::FreeSurfer &&
+      (cortex.size() > 1 || !labels.found.contains(left ? kLeftCortex : kRightCortex))) {
+    json["preset"] = "aseg";
+    json["grey-label"] = cortex;
   }
+  json["hemisphere"] = left ? "L" : "R";
   return json;
 }
 
 /// Where the files are: a folder is looked through, a file stands for itself.
 study::SubjectFiles filesOf(const fs::path& input, const PlanOptions& options, InputKind kind) {
   study::SubjectFiles files;
-  switch (kind) {
-    case InputKind::FreeSurfer:
-    case InputKind::Bids:
-      files = study::findSubjectFiles(input);
-      break;
-    case InputKind::T1:
-      files.t1 = input;
-      break;
-    default:
-      files.labels = input;
+  if (kind == InputKind::FreeSurfer || kind == InputKind::Bids) {
+    files = study::findSubjectFiles(input);
+  } else {
+    (kind == InputKind::T1 ? files.t1 : files.labels) = input;
   }
   if (options.given == GivenSurfaces::Remake) files.left = files.right = {};
   return files;
@@ -231,46 +199,60 @@ class Planner {
       labels_ = nameLabels(*files_.labels, solid ? std::optional(3) : std::nullopt);
       use("labels", *files_.labels, std::string(nameOf(labels_.naming)));
     }
-    const bool given = surfaces().white.has_value();
-    if (!given && !files_.labels && !files_.t1) {
-      throw InvalidInput(other().white->string() +
+    if (!given_.white && !files_.labels && !files_.t1) {
+      throw InvalidInput((left_ ? files_.right : files_.left).white->string() +
                          ": is all there is; this hemisphere has neither surfaces nor labels");
     }
     if (wanted(options_, RunStep::Thickness)) planThickness();
-    if (wanted(options_, RunStep::Surface)) planSurface(given);
-    planTemplate(given);
-    if (wanted(options_, RunStep::Unfold)) planUnfold();
+    if (wanted(options_, RunStep::Surface)) planSurface();
+    planTemplate();
+    if (wanted(options_, RunStep::Unfold)) {
+      add("unfold", {"surface"},
+          {{"SURFACE", made("surface", std::string(nameOf(options_.unfolded)) + ".surf.gii")},
+           {"direction", {left_ ? -1 : 1, 0, 0}},
+           {"frames", 40}});
+    }
     return std::move(plan_);
   }
 
  private:
-  [[nodiscard]] const study::HemisphereFiles& surfaces() const {
-    return left_ ? files_.left : files_.right;
-  }
-  [[nodiscard]] const study::HemisphereFiles& other() const {
-    return left_ ? files_.right : files_.left;
+  /// A file that a step writes, or its folder.
+  [[nodiscard]] std::string made(const char* step, const fs::path& file = {}) const {
+    const fs::path folder = out_ / (step + ending_);
+    return (file.empty() ? folder : folder / file).string();
   }
 
-  /// Where `segment` leaves this side.
-  [[nodiscard]] fs::path segmented() const { return out_ / "segment" / (left_ ? "left" : "right"); }
+  /// Where `segment`, one and the same step for either side, leaves this one.
+  [[nodiscard]] std::string segmented(const char* file) const {
+    return (out_ / "segment" / (left_ ? "left" : "right") / file).string();
+  }
 
   void use(const std::string& role, const fs::path& path, const std::string& meaning = "") {
     plan_.sources.push_back({role, path, meaning});
   }
 
+  /// A file, if there is one, as the value of a step's option.
+  void give(Json& json, const char* option, const std::string& role,
+            const std::optional<fs::path>& path, const std::string& meaning = "") {
+    if (!path) return;
+    use(role, *path, meaning);
+    json[option] = path->string();
+  }
+
+  void add(const std::string& command, std::vector<std::string> needs, Json json) {
+    const auto named = [&](const std::string& c) { return c == "segment" ? c : c + ending_; };
+    for (std::string& need : needs) need = named(need);
+    plan_.steps.push_back(
+        {named(command), command, std::move(needs), std::make_shared<Json>(std::move(json))});
+  }
+
   void planSegment() {
-    use("T1", *files_.t1);
-    Json json = {{"T1", files_.t1->string()}};
-    if (files_.mask) {
-      use("brain mask", *files_.mask);
-      json["mask"] = files_.mask->string();
-    }
-    if (files_.atlas) {
-      use("atlas", *files_.atlas);
-      json["atlas"] = files_.atlas->string();
-    }
-    json["hemisphere"] = "both";  // one and the same step for either side
-    plan_.steps.push_back({"segment", "segment", {}, values(json)});
+    Json json;
+    give(json, "T1", "T1", files_.t1);
+    give(json, "mask", "brain mask", files_.mask);
+    give(json, "atlas", "atlas", files_.atlas);
+    json["hemisphere"] = "both";
+    add("segment", {}, std::move(json));
     labels_.naming = Naming::ThreeClass;
     needs_ = {"segment"};
   }
@@ -281,109 +263,85 @@ class Planner {
           "there are no labels: the thickness of voxels and layers are left out");
       return;
     }
-    const fs::path labels = files_.labels ? *files_.labels : segmented() / "hemisphere.nii.gz";
-    plan_.steps.push_back({"thickness" + ending_, "thickness", needs_,
-                           values(thicknessValues(labels, labels_, left_))});
+    const std::string labels =
+        files_.labels ? files_.labels->string() : segmented("hemisphere.nii.gz");
+    add("thickness", needs_, thicknessValues(labels, labels_, left_));
   }
 
-  void planSurface(bool given) {
+  void planSurface() {
     Json json;
-    std::vector<std::string> needs;
-    if (given) {
-      use("white surface", *surfaces().white);
-      use("pial surface", *surfaces().pial);
-      if (surfaces().mid) use("middle surface", *surfaces().mid);
-      json = givenSurfaceValues(files_, left_);
-    } else if (files_.t1) {
-      const fs::path segment = segmented();
-      json = {{"inner-level", (segment / "white_share.nii.gz").string()},
-              {"outer-level", (segment / "tissue_share.nii.gz").string()},
-              {"insulated-mask", (segment / "cut.nii.gz").string()},
-              {"image", files_.t1->string()},
-              {"hemisphere", left_ ? "L" : "R"}};
-      needs = needs_;
-    } else {
-      json = surfaceValues(*files_.labels, labels_, left_);
-      if (files_.image) {
-        use("image", *files_.image, "places the borders");
-        json["image"] = files_.image->string();
+    const bool ofImage = !given_.white && files_.t1;
+    if (given_.white) {
+      give(json, "white-surface", "white surface", given_.white);
+      give(json, "pial-surface", "pial surface", given_.pial);
+      json["hemisphere"] = side_;
+      give(json, "mid-surface", "middle surface", given_.mid);
+      if (files_.layout == study::SubjectLayout::FreeSurfer && files_.surfaceVolume) {
+        json["surface-space"] = "tkr";
+        json["fs-volume"] = files_.surfaceVolume->string();
       }
+    } else if (ofImage) {
+      json = {{"inner-level", segmented("white_share.nii.gz")},
+              {"outer-level", segmented("tissue_share.nii.gz")},
+              {"insulated-mask", segmented("cut.nii.gz")},
+              {"image", files_.t1->string()},
+              {"hemisphere", side_}};
+    } else {
+      json = surfaceValues(files_.labels->string(), labels_, left_);
+      give(json, "image", "image", files_.image, "places the borders");
     }
-    if (given && surfaces().parcellation) {
-      use("regions", *surfaces().parcellation);
-      json["parcellation"] = surfaces().parcellation->string();
+    if (given_.white && given_.parcellation) {
+      give(json, "parcellation", "regions", given_.parcellation);
     } else if (files_.atlas) {
       if (!files_.t1) use("regions", *files_.atlas);
       json["atlas"] = files_.atlas->string();
-    } else if (files_.t1 && !given) {
+    } else if (ofImage) {
       json["atlas"] = (out_ / "segment" / "atlas.nii.gz").string();
     }
-    plan_.steps.push_back({"surface" + ending_, "surface", needs, values(json)});
+    add("surface", ofImage ? needs_ : std::vector<std::string>{}, std::move(json));
   }
 
   /// True if the step is asked for; or if nothing is, and the input is a person's hemisphere.
-  [[nodiscard]] bool onTemplate(RunStep step, bool given) const {
+  [[nodiscard]] bool onTemplate(RunStep step) const {
     if (!options_.steps.empty()) return wanted(options_, step);
     const bool named = labels_.naming == Naming::FreeSurfer || labels_.naming == Naming::Ribbon;
-    return options_.cortexTemplate != "none" && (given || files_.t1 || named);
-  }
-
-  void add(const std::string& name, const std::string& command,
-           const std::vector<std::string>& needs, Json json) {
-    std::vector<std::string> all;
-    for (const std::string& need : needs) all.push_back(need + ending_);
-    plan_.steps.push_back({name + ending_, command, all, values(std::move(json))});
+    return options_.cortexTemplate != "none" && (given_.white || files_.t1 || named);
   }
 
   /// From one person to others: a sphere, its place on the template, maps there, regions.
-  void planTemplate(bool given) {
-    const auto folder = [&](const char* step) { return out_ / (step + ending_); };
-    const fs::path surface = folder("surface");
-    if (onTemplate(RunStep::Sphere, given)) {
-      add("sphere", "sphere", {"surface"}, {{"SURFACE", (surface / "white.surf.gii").string()}});
+  void planTemplate() {
+    if (onTemplate(RunStep::Sphere)) {
+      add("sphere", {"surface"}, {{"SURFACE", made("surface", "white.surf.gii")}});
     }
-    const std::string side = left_ ? "L" : "R";
-    const std::string sphere = (folder("register") / "sphere.reg.surf.gii").string();
-    if (onTemplate(RunStep::Register, given)) {
-      add("register", "register", {"surface", "sphere"},
-          {{"SPHERE", (folder("sphere") / "sphere.surf.gii").string()},
-           {"surfaces", surface.string()},
+    if (onTemplate(RunStep::Register)) {
+      add("register", {"surface", "sphere"},
+          {{"SPHERE", made("sphere", "sphere.surf.gii")},
+           {"surfaces", made("surface")},
            {"template", options_.cortexTemplate}});
-      Json maps = Json::array();
-      for (const char* map : {"thickness", "sulc"}) {
-        maps.push_back((surface / (std::string(map) + ".shape.gii")).string());
-      }
-      add("resample", "resample", {"surface", "register"},
+      const Json maps = {made("surface", "thickness.shape.gii"), made("surface", "sulc.shape.gii")};
+      add("resample", {"surface", "register"},
           {{"MAP", maps},
-           {"amounts", {(surface / "area.shape.gii").string()}},
-           {"from", sphere},
+           {"amounts", Json::array({made("surface", "area.shape.gii")})},
+           {"from", made("register", "sphere.reg.surf.gii")},
            {"to", "fsaverage5"},
            {"space", options_.cortexTemplate}});
     }
-    if (onTemplate(RunStep::Parcellate, given)) {
-      Json json = {{"SURFACES", folder("register").string()},
+    if (onTemplate(RunStep::Parcellate)) {
+      Json json = {{"SURFACES", made("register")},
                    {"template", options_.cortexTemplate},
-                   {"hemisphere", side}};
+                   {"hemisphere", side_}};
       if (const auto image = files_.t1 ? files_.t1 : files_.labels) {
         json["volume"] = true;
         json["like"] = image->string();
-        json["ribbon"] = surface.string();
+        json["ribbon"] = made("surface");
       }
-      add("parcellate", "parcellate", {"surface", "register"}, json);
-      add("regions", "regions", {"surface", "parcellate"},
-          {{"SURFACES", surface.string()},
-           {"atlas", {(folder("parcellate") / "regions.label.gii").string()}},
-           {"hemisphere", side},
+      add("parcellate", {"surface", "register"}, std::move(json));
+      add("regions", {"surface", "parcellate"},
+          {{"SURFACES", made("surface")},
+           {"atlas", Json::array({made("parcellate", "regions.label.gii")})},
+           {"hemisphere", side_},
            {"person", out_.lexically_normal().filename().string()}});
     }
-  }
-
-  void planUnfold() {
-    const std::string file = std::string(nameOf(options_.unfolded)) + ".surf.gii";
-    const Json json = {{"SURFACE", (out_ / ("surface" + ending_) / file).string()},
-                       {"direction", {left_ ? -1 : 1, 0, 0}},
-                       {"frames", 40}};
-    plan_.steps.push_back({"unfold" + ending_, "unfold", {"surface" + ending_}, values(json)});
   }
 
   study::SubjectFiles files_;
@@ -391,6 +349,8 @@ class Planner {
   const PlanOptions& options_;
   bool left_;
   std::string ending_;
+  std::string side_ = left_ ? "L" : "R";
+  const study::HemisphereFiles& given_ = left_ ? files_.left : files_.right;
   Plan plan_;
   NamedLabels labels_;
   std::vector<std::string> needs_;  ///< of steps that read what `segment` makes
@@ -458,16 +418,17 @@ Plan planRun(const fs::path& input, const fs::path& out, const std::optional<std
   const InputKind kind = options.kind == InputKind::Auto ? detectKind(input) : options.kind;
   study::SubjectFiles files = filesOf(input, options, kind);
   if (atlas) files.atlas = *atlas;
+  const auto planOf = [&](bool left, const char* ending) {
+    return Planner(files, out, options, left, ending).make(kind);
+  };
   if (options.hemisphere == RunHemisphere::Both && hasBothSides(files)) {
-    Plan plan = Planner(files, out, options, true, "-L").make(kind);
-    join(plan, Planner(std::move(files), out, options, false, "-R").make(kind));
+    Plan plan = planOf(true, "-L");
+    join(plan, planOf(false, "-R"));
     return plan;
   }
   const bool onlyRight = !files.left.white && files.right.white && !files.labels && !files.t1;
-  const bool left = options.hemisphere == RunHemisphere::Both
-                        ? !onlyRight
-                        : options.hemisphere == RunHemisphere::Left;
-  return Planner(std::move(files), out, options, left, "").make(kind);
+  const bool both = options.hemisphere == RunHemisphere::Both;
+  return planOf(both ? !onlyRight : options.hemisphere == RunHemisphere::Left, "");
 }
 
 Point outermostPoint(const TriangleMesh& mesh, const Vector& direction) {

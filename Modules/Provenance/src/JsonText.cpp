@@ -5,51 +5,21 @@
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Document.h"
 
-#include <algorithm>
-#include <iterator>
+#include <sstream>
 #include <unordered_set>
 #include <vector>
 
 namespace explica::provenance {
 namespace {
 
-/// Characters of a text, counted as they are read: the parser does not tell where a value stands.
-class CountedCharacters {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  CountedCharacters(const char* at, std::size_t* count) : at_(at), count_(count) {}
-  reference operator*() const { return *at_; }
-  CountedCharacters& operator++() {
-    ++at_;
-    ++*count_;
-    return *this;
-  }
-  CountedCharacters operator++(int) {
-    const CountedCharacters before = *this;
-    ++*this;
-    return before;
-  }
-  bool operator==(const CountedCharacters& other) const { return at_ == other.at_; }
-  bool operator!=(const CountedCharacters& other) const { return at_ != other.at_; }
-
- private:
-  const char* at_;
-  std::size_t* count_;
-};
-
 /// Builds a value from the parser's events, within limits, and knows the place of each.
 class Builder : public nlohmann::json_sax<Json> {
  public:
-  Builder(std::string_view text, std::string name, const DocumentLimits& limits,
-          std::map<std::string, int>* lines)
-      : text_(text), name_(std::move(name)), limits_(limits), lines_(lines) {}
+  /// @param source  from which the parser takes the text: it does not tell where a value stands
+  Builder(std::string_view text, std::streambuf& source, std::string name,
+          const DocumentLimits& limits, std::map<std::string, int>* lines)
+      : text_(text), source_(source), name_(std::move(name)), limits_(limits), lines_(lines) {}
 
-  std::size_t read = 0;  ///< characters that the parser has taken
   Json root;
 
   bool null() override { return add(nullptr); }
@@ -137,8 +107,8 @@ class Builder : public nlohmann::json_sax<Json> {
   }
   /// The line of what was read last.  The last character may be the one after it.
   [[nodiscard]] int line() const {
-    const std::size_t end = std::min(read, text_.size()) - std::min<std::size_t>(read, 1);
-    for (; counted_ < end; ++counted_) line_ += text_[counted_] == '\n';
+    const auto taken = source_.pubseekoff(0, std::ios::cur, std::ios::in);
+    for (; counted_ + 1 < taken; ++counted_) line_ += text_[counted_] == '\n';
     return line_;
   }
   [[noreturn]] void refuse(const std::string& what) const {
@@ -149,12 +119,13 @@ class Builder : public nlohmann::json_sax<Json> {
   }
 
   std::string_view text_;
+  std::streambuf& source_;
   std::string name_;
   DocumentLimits limits_;
   std::map<std::string, int>* lines_;
   std::vector<Level> levels_;
   std::size_t count_ = 0;
-  mutable std::size_t counted_ = 0;  ///< characters whose line ends are in line_
+  mutable std::streamoff counted_ = 0;  ///< characters whose line ends are in line_
   mutable int line_ = 1;
 };
 
@@ -162,10 +133,9 @@ class Builder : public nlohmann::json_sax<Json> {
 
 Json parseJson(std::string_view text, const std::string& name, const DocumentLimits& limits,
                std::map<std::string, int>* lines) {
-  Builder builder(text, name, limits, lines);
-  const CountedCharacters first(text.data(), &builder.read);
-  const CountedCharacters last(text.data() + text.size(), &builder.read);
-  if (!Json::sax_parse(first, last, &builder, Json::input_format_t::json, true, true)) {
+  std::istringstream stream{std::string(text)};
+  Builder builder(text, *stream.rdbuf(), name, limits, lines);
+  if (!Json::sax_parse(stream, &builder, Json::input_format_t::json, true, true)) {
     throw IOError(name + ": is not JSON");
   }
   return std::move(builder.root);

@@ -66,8 +66,9 @@ std::vector<Picture> filmPictures(const std::vector<FilmFrame>& frames, const Fi
   const int strip = static_cast<int>(kCaptionRows * letters);
   SurfacePictureOptions drawn = options;
   drawn.height = std::max(1, options.height - strip);
-  const Camera camera =
-      cameraTowards(placesOf(frames, look.focus), look.towards, look.up, drawn.width, drawn.height);
+  FigureView all = look.view;
+  all.focus.clear();
+  const Camera camera = cameraOf(placesOf(frames, look.view.focus), all, drawn.width, drawn.height);
   std::vector<Picture> pictures;
   SurfaceScene scene(frames.front().mesh, movesOf(frames));
   for (const FilmFrame& frame : frames) {

@@ -56,7 +56,7 @@ TEST(Film, FillsThePictureWithItsFocus) {
   FilmLook look;
   const auto frames = growingBall(10);
   for (std::int32_t v = 0; v < frames[0].mesh.vertexCount(); ++v) {
-    if (frames[0].mesh.positions(v, 2) > 9) look.focus.push_back(v);
+    if (frames[0].mesh.positions(v, 2) > 9) look.view.focus.push_back(v);
   }
   const auto close = filmPictures(frames, look, smallPicture());
   const auto whole = filmPictures(frames, {}, smallPicture());

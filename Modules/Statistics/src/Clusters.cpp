@@ -12,11 +12,11 @@ Cluster grow(const geometry::IndexLists& neighbours, std::vector<bool>& waiting,
              std::int32_t first) {
   Cluster cluster;
   cluster.vertices = {first};
-  waiting[static_cast<std::size_t>(first)] = false;
+  waiting[first] = false;
   for (std::size_t i = 0; i < cluster.vertices.size(); ++i) {
-    for (const std::int32_t w : neighbours[static_cast<std::size_t>(cluster.vertices[i])]) {
-      if (!waiting[static_cast<std::size_t>(w)]) continue;
-      waiting[static_cast<std::size_t>(w)] = false;
+    for (const std::int32_t w : neighbours[cluster.vertices[i]]) {
+      if (!waiting[w]) continue;
+      waiting[w] = false;
       cluster.vertices.push_back(w);
     }
   }
@@ -42,7 +42,7 @@ std::vector<Cluster> findClusters(const geometry::IndexLists& neighbours,
                                   const Eigen::VectorXd& areas, const Eigen::VectorXd& weights) {
   std::vector<bool> waiting(static_cast<std::size_t>(values.size()));
   for (std::size_t v = 0; v < waiting.size(); ++v) {
-    waiting[v] = values[static_cast<Eigen::Index>(v)] >= threshold;
+    waiting[v] = values[v] >= threshold;
   }
   std::vector<Cluster> clusters;
   for (std::size_t v = 0; v < waiting.size(); ++v) {
@@ -76,8 +76,8 @@ LargestCluster LargestClusterFinder::find(std::span<const float> values, float t
       cluster.extent += areas_[v];
       cluster.mass += areas_[v] * (std::abs(values[v]) - threshold);
       for (const std::int32_t w : neighbours_[v]) {
-        if (side_[static_cast<std::size_t>(w)] != side) continue;
-        side_[static_cast<std::size_t>(w)] = 0;
+        if (side_[w] != side) continue;
+        side_[w] = 0;
         stack_.push_back(w);
       }
     }

@@ -16,11 +16,6 @@ namespace {
 constexpr double kSettled = 1e-9;  // relative change of a site's shift and scale between rounds
 constexpr int kRounds = 10000;     // at most; each shortens the distance to the fixed point
 
-/// Means and variances of each site at each place, standardised.
-struct SiteMoments {
-  Eigen::MatrixXd mean, variance;  // S x V
-};
-
 /// Moments over places of one site: priors of its shift and its variance.
 struct Prior {
   double mean, variance;  // normal, of the shift
@@ -55,7 +50,7 @@ std::pair<double, double> posterior(double mean, double variance, double n, cons
 std::vector<double> countsOf(const std::vector<int>& sites) {
   std::vector<double> counts(
       static_cast<std::size_t>(1 + *std::max_element(sites.begin(), sites.end())));
-  for (const int s : sites) ++counts[static_cast<std::size_t>(s)];
+  for (const int s : sites) ++counts[s];
   if (counts.size() < 2) throw InvalidInput("--site combat: there is one site");
   if (*std::min_element(counts.begin(), counts.end()) < 2) {
     throw InvalidInput("--site combat: a site has one person, so that its spread is not known");
@@ -73,11 +68,9 @@ struct Standardised {
 
 Standardised standardise(const Eigen::MatrixXd& values, const Eigen::MatrixXd& covariates,
                          const std::vector<int>& sites, const std::vector<double>& counts) {
-  const Eigen::Index n = values.rows();
+  const auto n = static_cast<double>(values.rows());
   const auto s = static_cast<Eigen::Index>(counts.size());
-  Eigen::MatrixXd design = Eigen::MatrixXd::Zero(n, s + covariates.cols());
-  for (Eigen::Index i = 0; i < n; ++i) design(i, sites[static_cast<std::size_t>(i)]) = 1;
-  design.rightCols(covariates.cols()) = covariates;
+  const Eigen::MatrixXd design = withSites(sites, covariates);
   Standardised result;
   for (Eigen::Index v = 0; v < values.cols(); ++v) {
     if (values.col(v).allFinite()) result.places.push_back(v);
@@ -85,33 +78,23 @@ Standardised standardise(const Eigen::MatrixXd& values, const Eigen::MatrixXd& c
   const Eigen::Map<const Eigen::VectorXd> weights(counts.data(), s);
   const Eigen::MatrixXd y = values(Eigen::all, result.places);
   const Eigen::MatrixXd b = design.householderQr().solve(y);
-  const Eigen::RowVectorXd grand = weights.transpose() * b.topRows(s) / static_cast<double>(n);
+  const Eigen::RowVectorXd grand = weights.transpose() * b.topRows(s) / n;
   result.fitted = covariates * b.bottomRows(covariates.cols());
   result.fitted.rowwise() += grand;
-  result.spread =
-      ((y - design * b).colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt().transpose();
+  result.spread = ((y - design * b).colwise().squaredNorm() / n).cwiseSqrt().transpose();
   result.z = (y - result.fitted).array().rowwise() / result.spread.transpose().array();
   return result;
 }
 
-SiteMoments momentsOf(const Eigen::MatrixXd& z, const std::vector<int>& sites,
-                      const std::vector<double>& counts) {
-  const auto s = static_cast<Eigen::Index>(counts.size());
-  const Eigen::Map<const Eigen::ArrayXd> n(counts.data(), s);
-  SiteMoments moments{Eigen::MatrixXd::Zero(s, z.cols()), Eigen::MatrixXd::Zero(s, z.cols())};
-  for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    moments.mean.row(sites[static_cast<std::size_t>(i)]) += z.row(i);
-  }
-  moments.mean.array().colwise() /= n;
-  for (Eigen::Index i = 0; i < z.rows(); ++i) {
-    const int site = sites[static_cast<std::size_t>(i)];
-    moments.variance.row(site) += (z.row(i) - moments.mean.row(site)).cwiseAbs2();
-  }
-  moments.variance.array().colwise() /= n - 1;
-  return moments;
-}
-
 }  // namespace
+
+Eigen::MatrixXd withSites(const std::vector<int>& sites, const Eigen::MatrixXd& covariates) {
+  const int count = 1 + *std::ranges::max_element(sites);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(covariates.rows(), count + covariates.cols());
+  for (std::size_t i = 0; i < sites.size(); ++i) all(i, sites[i]) = 1;
+  all.rightCols(covariates.cols()) = covariates;
+  return all;
+}
 
 CombatResult combat(Eigen::MatrixXd& values, const Eigen::MatrixXd& covariates,
                     const std::vector<int>& sites) {
@@ -122,22 +105,29 @@ CombatResult combat(Eigen::MatrixXd& values, const Eigen::MatrixXd& covariates,
   if (places < 2) {
     throw InvalidInput("--site combat: learns from many places; of one, use --site fixed");
   }
-  const SiteMoments moments = momentsOf(standard.z, sites, counts);
   CombatResult result{Eigen::MatrixXd::Zero(s, values.cols()),
                       Eigen::MatrixXd::Ones(s, values.cols())};
   for (Eigen::Index site = 0; site < s; ++site) {
-    const Prior prior = priorOf(moments.mean.row(site), moments.variance.row(site));
+    Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(places), variance = mean;
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      if (sites[i] == site) mean += standard.z.row(i);
+    }
+    mean /= counts[site];
+    for (std::size_t i = 0; i < sites.size(); ++i) {
+      if (sites[i] == site) variance += (standard.z.row(i) - mean).cwiseAbs2();
+    }
+    variance /= counts[site] - 1;
+    const Prior prior = priorOf(mean, variance);
     for (Eigen::Index w = 0; w < places; ++w) {
-      const auto [shift, scale] = posterior(moments.mean(site, w), moments.variance(site, w),
-                                            counts[static_cast<std::size_t>(site)], prior);
-      result.shift(site, standard.places[static_cast<std::size_t>(w)]) = shift;
-      result.scale(site, standard.places[static_cast<std::size_t>(w)]) = std::sqrt(scale);
+      const auto [shift, scale] = posterior(mean[w], variance[w], counts[site], prior);
+      result.shift(site, standard.places[w]) = shift;
+      result.scale(site, standard.places[w]) = std::sqrt(scale);
     }
   }
   for (Eigen::Index w = 0; w < places; ++w) {
-    const Eigen::Index v = standard.places[static_cast<std::size_t>(w)];
+    const Eigen::Index v = standard.places[w];
     for (Eigen::Index i = 0; i < values.rows(); ++i) {
-      const int site = sites[static_cast<std::size_t>(i)];
+      const int site = sites[i];
       values(i, v) = standard.fitted(i, w) + standard.spread[w] *
                                                  (standard.z(i, w) - result.shift(site, v)) /
                                                  result.scale(site, v);

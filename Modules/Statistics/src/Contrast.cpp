@@ -3,6 +3,7 @@
 #include "Explica/Statistics/Contrast.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 
 #include <Eigen/QR>
 
@@ -77,66 +78,55 @@ std::vector<Summand> summandsOf(const std::string& row) {
   return found;
 }
 
-/// Reads the names of one design.
-class Names {
- public:
-  explicit Names(const Design& design) : design_(design) {}
-
-  /// p x k: one column of weights, or one for each column of a term.
-  [[nodiscard]] Eigen::MatrixXd weightsOf(const std::string& name) const {
-    const auto p = static_cast<Eigen::Index>(design_.columns.size());
-    const auto column = std::find(design_.columns.begin(), design_.columns.end(), name);
-    if (column != design_.columns.end()) {
-      return Eigen::VectorXd::Unit(p, column - design_.columns.begin());
-    }
-    if (isReference(name)) return Eigen::VectorXd::Zero(p);
-    for (std::size_t t = 0; t < design_.terms.size(); ++t) {
-      if (nameOfTerm(design_.terms[t]) == name) return ofTerm(static_cast<int>(t));
-    }
-    std::string known;
-    for (const std::string& c : design_.columns) known += (known.empty() ? "" : ", ") + c;
-    throw InvalidInput("contrast: '" + name + "' is no column of the design (" + known + ")");
-  }
-
-  [[nodiscard]] Eigen::MatrixXd ofTerm(int term) const {
-    const auto p = static_cast<Eigen::Index>(design_.columns.size());
-    Eigen::MatrixXd weights(p, 0);
-    for (Eigen::Index c = 0; c < p; ++c) {
-      if (design_.termOf[static_cast<std::size_t>(c)] != term) continue;
-      weights.conservativeResize(p, weights.cols() + 1);
-      weights.rightCols(1) = Eigen::VectorXd::Unit(p, c);
-    }
-    return weights;
-  }
-
- private:
-  /// True of a product with the first level of a factor that is coded by differences from it.
-  [[nodiscard]] bool isReference(const std::string& name) const {
-    bool found = false;
-    for (const std::string& part : parts(name, ':')) {
-      bool known = false;
-      for (const Factor& f : design_.factors) {
-        if (part == f.name) known = f.levels.empty();
-        for (std::size_t l = 0; l < f.levels.size(); ++l) {
-          if (part != f.name + "[" + f.levels[l] + "]") continue;
-          known = true;
-          found = found || (l == 0 && f.reference);
-        }
+/// True of a product with the first level of a factor that is coded by differences from it.
+bool isReference(const Design& design, const std::string& name) {
+  bool found = false;
+  for (const std::string& part : parts(name, ':')) {
+    bool known = false;
+    for (const Factor& f : design.factors) {
+      if (part == f.name) known = f.levels.empty();
+      for (std::size_t l = 0; l < f.levels.size(); ++l) {
+        if (part != f.name + "[" + f.levels[l] + "]") continue;
+        known = true;
+        found = found || (l == 0 && f.reference);
       }
-      if (!known) return false;
     }
-    return found;
+    if (!known) return false;
   }
+  return found;
+}
 
-  const Design& design_;
-};
+/// p x k, one for each column of the term.
+Eigen::MatrixXd weightsOfTerm(const Design& design, std::size_t term) {
+  const auto p = static_cast<Eigen::Index>(design.columns.size());
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index c = 0; c < p; ++c) {
+    if (design.termOf[c] == static_cast<int>(term)) columns.push_back(c);
+  }
+  return Eigen::MatrixXd::Identity(p, p)(Eigen::all, columns);
+}
 
-Eigen::MatrixXd weightsOfRow(const std::string& row, const Names& names) {
+/// p x k: one column of weights, or one for each column of a term.
+Eigen::MatrixXd weightsOf(const Design& design, const std::string& name) {
+  const auto p = static_cast<Eigen::Index>(design.columns.size());
+  const auto column = std::ranges::find(design.columns, name);
+  if (column != design.columns.end()) {
+    return Eigen::VectorXd::Unit(p, column - design.columns.begin());
+  }
+  if (isReference(design, name)) return Eigen::VectorXd::Zero(p);
+  for (std::size_t t = 0; t < design.terms.size(); ++t) {
+    if (nameOfTerm(design.terms[t]) == name) return weightsOfTerm(design, t);
+  }
+  throw InvalidInput("contrast: '" + name + "' is no column of the design (" +
+                     joined(design.columns) + ")");
+}
+
+Eigen::MatrixXd weightsOfRow(const std::string& row, const Design& design) {
   const auto summands = summandsOf(row);
   Eigen::MatrixXd sum;
   for (const Summand& s : summands) {
     if (s.name.empty()) throw InvalidInput("contrast '" + row + "': a number without a column");
-    const Eigen::MatrixXd weights = s.factor * names.weightsOf(s.name);
+    const Eigen::MatrixXd weights = s.factor * weightsOf(design, s.name);
     if (summands.size() > 1 && weights.cols() > 1) {
       throw InvalidInput("contrast '" + row + "': '" + s.name +
                          "' has several columns; name the level, as in " + s.name + "[...]");
@@ -161,10 +151,9 @@ Contrast parseContrast(std::string_view text, const Design& design) {
   const std::size_t equals = text.find('=');
   contrast.expression = trimmed(equals == text.npos ? text : text.substr(equals + 1));
   contrast.name = equals == text.npos ? contrast.expression : trimmed(text.substr(0, equals));
-  const Names names(design);
   contrast.weights.resize(design.matrix.cols(), 0);
   for (const std::string& row : parts(contrast.expression, ';')) {
-    const Eigen::MatrixXd weights = weightsOfRow(trimmed(row), names);
+    const Eigen::MatrixXd weights = weightsOfRow(trimmed(row), design);
     contrast.weights.conservativeResize(Eigen::NoChange, contrast.weights.cols() + weights.cols());
     contrast.weights.rightCols(weights.cols()) = weights;
   }
@@ -174,11 +163,10 @@ Contrast parseContrast(std::string_view text, const Design& design) {
 
 std::vector<Contrast> contrastsOfTerms(const Design& design) {
   std::vector<Contrast> contrasts;
-  const Names names(design);
   for (std::size_t t = 0; t < design.terms.size(); ++t) {
     if (design.terms[t].empty() && design.terms.size() > 1) continue;
     const std::string name = nameOfTerm(design.terms[t]);
-    contrasts.push_back({name, name, names.ofTerm(static_cast<int>(t))});
+    contrasts.push_back({name, name, weightsOfTerm(design, t)});
   }
   return contrasts;
 }

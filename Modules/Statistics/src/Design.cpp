@@ -48,7 +48,7 @@ std::optional<Eigen::VectorXd> numbersOf(const Table& table, std::size_t column,
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto value = numberIn(table.rows[rows[i]][column]);
     if (!value) return {};
-    values[static_cast<Eigen::Index>(i)] = *value;
+    values[i] = *value;
   }
   return values;
 }
@@ -130,7 +130,7 @@ class Coder {
     for (std::size_t l = difference ? 1 : 0; l < levels.names.size(); ++l) {
       Eigen::VectorXd indicator(static_cast<Eigen::Index>(levels.of.size()));
       for (std::size_t i = 0; i < levels.of.size(); ++i) {
-        indicator[static_cast<Eigen::Index>(i)] = levels.of[i] == static_cast<int>(l) ? 1 : 0;
+        indicator[i] = levels.of[i] == static_cast<int>(l) ? 1 : 0;
       }
       coded.columns.push_back(std::move(indicator));
       coded.names.push_back(column + "[" + levels.names[l] + "]");
@@ -161,7 +161,7 @@ void addColumns(Design& design, const Coded& coded) {
       static_cast<Eigen::Index>(design.rows.size()),
       design.matrix.cols() + static_cast<Eigen::Index>(coded.columns.size()));
   for (std::size_t j = 0; j < coded.columns.size(); ++j) {
-    design.matrix.col(static_cast<Eigen::Index>(design.columns.size())) = coded.columns[j];
+    design.matrix.col(design.columns.size()) = coded.columns[j];
     design.columns.push_back(coded.names[j]);
     design.termOf.push_back(static_cast<int>(design.terms.size()) - 1);
   }
@@ -182,7 +182,7 @@ void requireFullRank(const Eigen::MatrixXd& x, const std::vector<std::string>& c
       rest -= basis.leftCols(c) * (basis.leftCols(c).transpose() * rest);
     }
     if (!(rest.norm() > kDependent * length)) {
-      throw InvalidInput("column '" + columns[static_cast<std::size_t>(c)] +
+      throw InvalidInput("column '" + columns[c] +
                          "' of the design is a sum of columns before it, so that its effect cannot "
                          "be told from theirs; leave one of them out of the model");
     }

@@ -19,8 +19,7 @@ Eigen::MatrixXd residualsOf(const Eigen::MatrixXd& design, const Eigen::MatrixXd
     const auto column = static_cast<Eigen::Index>(k);
     auto values = residuals.col(column);
     reader(begin + k, {values.data(), static_cast<std::size_t>(values.size())});
-    values -=
-        coefficients.transpose() * design.row(static_cast<Eigen::Index>(begin + k)).transpose();
+    values -= coefficients.transpose() * design.row(begin + k).transpose();
   });
   return residuals;
 }

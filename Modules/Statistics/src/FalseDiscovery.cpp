@@ -11,23 +11,17 @@
 namespace explica::statistics {
 
 Eigen::VectorXd falseDiscoveryRate(const Eigen::VectorXd& p) {
-  return falseDiscoveryRate(p, Eigen::VectorXd::Ones(p.size()));
-}
-
-Eigen::VectorXd falseDiscoveryRate(const Eigen::VectorXd& p, const Eigen::VectorXd& weights) {
   std::vector<Eigen::Index> order;
   for (Eigen::Index v = 0; v < p.size(); ++v) {
     if (!std::isnan(p[v])) order.push_back(v);
   }
   std::stable_sort(order.begin(), order.end(),
                    [&](Eigen::Index a, Eigen::Index b) { return p[a] < p[b]; });
-  std::vector<double> upTo;
-  double sum = 0;
-  for (const Eigen::Index v : order) upTo.push_back(sum += weights[v]);
+  const auto count = static_cast<double>(order.size());
   Eigen::VectorXd q = Eigen::VectorXd::Constant(p.size(), kNaN);
   double least = 1;
   for (std::size_t i = order.size(); i-- > 0;) {
-    if (upTo[i] > 0) least = std::min(least, p[order[i]] * sum / upTo[i]);
+    least = std::min(least, p[order[i]] * count / (i + 1.0));
     q[order[i]] = least;
   }
   return q;

@@ -3,6 +3,7 @@
 #include "Explica/Statistics/Formula.h"
 
 #include "Explica/Core/Errors.h"
+#include "Explica/Core/Text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -154,10 +155,7 @@ Formula parseFormula(std::string_view text) {
 }
 
 std::string nameOfTerm(const Term& term) {
-  if (term.empty()) return "intercept";
-  std::string name;
-  for (const std::string& column : term) name += (name.empty() ? "" : ":") + column;
-  return name;
+  return term.empty() ? "intercept" : joined(term, ":");
 }
 
 }  // namespace explica::statistics

@@ -16,100 +16,72 @@ namespace {
 /// Degrees of freedom that most places have: those of all people.
 double largestDf(const ContrastMaps& maps) {
   double df = 0;
-  for (const double v : maps.df) {
-    if (v > df) df = v;
-  }
+  for (const double v : maps.df) df = std::fmax(df, v);
   return df;
 }
 
-/// Two-sided P doubles that of one side; F has one side.
-double ofBothSides(double p, const Contrast& contrast) {
-  return contrast.isT() ? std::min(2 * p, 1.0) : p;
-}
-
 void makePermutations(const Design& design, const Contrast& contrast, const Eigen::MatrixXd& values,
-                      const PlaceSurface* surface, const InferenceOptions& options,
+                      const PlaceSurface* surface, const PermutationOptions& asked,
                       const Monitor& monitor, Inference& inference, PermutationResult& result) {
-  PermutationOptions permutation;
-  permutation.count = options.permutations;
-  permutation.seed = options.seed;
-  permutation.exchange = options.exchange;
-  permutation.blocks = options.blocks;
-  permutation.clusterThreshold = inference.threshold;
-  permutation.tfce = options.tfce && surface != nullptr;
+  PermutationOptions options = asked;
+  options.clusterThreshold = inference.threshold;
   result = permute(design, contrast, values, surface == nullptr ? nullptr : &surface->graph,
-                   permutation, monitor);
+                   options, monitor);
   inference.shuffles = static_cast<std::int64_t>(result.statistic.size());
   inference.exchange = result.exchange;
-  inference.exhaustive = result.exhaustive;
   inference.interrupted = result.interrupted;
   if (result.statistic.empty()) return;
   inference.familyWise = familyWiseP(result.statistic, result.observed);
-  if (permutation.tfce) {
-    inference.enhanced = result.enhanced;
-    inference.enhancedP = familyWiseP(result.tfce, result.enhanced);
-  }
+  if (result.tfce.empty()) return;
+  inference.enhanced = result.enhanced;
+  inference.enhancedP = familyWiseP(result.tfce, result.enhanced);
 }
 
-/// Clusters of one sign with their P.
-class ClusterJudge {
- public:
-  ClusterJudge(const Contrast& contrast, const Inference& inference,
-               const PermutationResult& permutation, const Smoothness* smoothness, double df)
-      : inference_(inference), permutation_(permutation) {
-    if (smoothness == nullptr) return;
-    const FieldKind kind{df, contrast.isT() ? 0 : static_cast<double>(contrast.weights.cols())};
-    const double sides = contrast.isT() ? 2 : 1;
-    sizes_.emplace(inference.threshold, kind, sides * smoothness->resels.byDimension[2], df);
-  }
+/// Degrees of freedom of F's numerator; 0 of t.
+double numeratorDf(const Contrast& contrast) {
+  return contrast.isT() ? 0 : static_cast<double>(contrast.weights.cols());
+}
 
-  FoundCluster judge(const Cluster& cluster, bool negative, double statistic) const {
-    FoundCluster found{cluster, negative, statistic, kNaN, kNaN, kNaN, kNaN, kNaN};
-    if (inference_.field.size() > 0) found.fieldPeak = inference_.field[cluster.peak];
-    if (sizes_) found.fieldExtent = sizes_->largest(cluster.weight);
-    if (permutation_.extent.empty()) return found;
-    found.peak = inference_.familyWise[cluster.peak];
-    found.extent = familyWiseP(permutation_.extent, cluster.extent);
-    found.mass = familyWiseP(permutation_.mass, cluster.mass);
-    return found;
-  }
-
- private:
-  const Inference& inference_;
-  const PermutationResult& permutation_;
-  std::optional<ClusterSizes> sizes_;
-};
-
+/// Clusters of both signs with their P.
 void findAllClusters(const ContrastMaps& maps, const Contrast& contrast,
-                     const PlaceSurface& surface, const Smoothness* smoothness,
-                     const ClusterJudge& judge, Inference& inference) {
-  const Eigen::VectorXd weights =
-      smoothness == nullptr ? Eigen::VectorXd() : smoothness->resels.perVertex;
+                     const PlaceSurface& surface, const Smoothness* smoothness, double df,
+                     const PermutationResult& permutation, Inference& inference) {
+  Eigen::VectorXd resels;
+  std::optional<ClusterSizes> sizes;
+  if (smoothness != nullptr) {
+    resels = smoothness->resels.perVertex;
+    sizes.emplace(inference.threshold, FieldKind{df, numeratorDf(contrast)},
+                  (contrast.isT() ? 2 : 1) * smoothness->resels.byDimension[2], df);
+  }
   for (const bool negative : {false, true}) {
     if (negative && !contrast.isT()) continue;
     const Eigen::VectorXd side = negative ? Eigen::VectorXd(-maps.statistic) : maps.statistic;
     for (const Cluster& c : findClusters(surface.topology.vertexVertices, side, inference.threshold,
-                                         surface.areas, weights)) {
-      inference.clusters.push_back(judge.judge(c, negative, maps.statistic[c.peak]));
+                                         surface.areas, resels)) {
+      FoundCluster found{c, negative, maps.statistic[c.peak]};
+      if (inference.field.size() > 0) found.fieldPeak = inference.field[c.peak];
+      if (sizes) found.fieldExtent = sizes->largest(c.weight);
+      if (!permutation.extent.empty()) {
+        found.peak = inference.familyWise[c.peak];
+        found.extent = familyWiseP(permutation.extent, c.extent);
+        found.mass = familyWiseP(permutation.mass, c.mass);
+      }
+      inference.clusters.push_back(std::move(found));
     }
   }
-  std::stable_sort(inference.clusters.begin(), inference.clusters.end(),
-                   [](const FoundCluster& a, const FoundCluster& b) {
-                     return a.cluster.extent > b.cluster.extent;
-                   });
+  std::ranges::stable_sort(inference.clusters, std::ranges::greater{},
+                           [](const FoundCluster& found) { return found.cluster.extent; });
 }
 
+/// Two-sided P doubles that of one side; F has one side.
 Eigen::VectorXd fieldP(const ContrastMaps& maps, const Contrast& contrast,
                        const Smoothness& smoothness) {
-  Eigen::VectorXd p(maps.statistic.size());
-  const double df1 = contrast.isT() ? 0 : static_cast<double>(contrast.weights.cols());
+  Eigen::VectorXd p = Eigen::VectorXd::Constant(maps.statistic.size(), kNaN);
   for (Eigen::Index v = 0; v < p.size(); ++v) {
-    p[v] = std::isnan(maps.statistic[v])
-               ? kNaN
-               : ofBothSides(peakProbability(
-                                 contrast.isT() ? std::abs(maps.statistic[v]) : maps.statistic[v],
-                                 {maps.df[v], df1}, smoothness.resels),
-                             contrast);
+    const double height = contrast.isT() ? std::abs(maps.statistic[v]) : maps.statistic[v];
+    if (std::isnan(height)) continue;
+    p[v] = peakProbability(height, {maps.df[v], numeratorDf(contrast)}, smoothness.resels);
+    if (contrast.isT()) p[v] = std::min(2 * p[v], 1.0);
   }
   return p;
 }
@@ -131,21 +103,20 @@ Smoothness smoothnessOf(const PlaceSurface& surface, const Eigen::VectorXd& roug
   for (Eigen::Index e = 0; e < roughness.size(); ++e) {
     if (!std::isnan(roughness[e])) continue;
     // Of an edge without roughness one end at least has no residuals; which, its other edges tell.
-    known[static_cast<std::size_t>(surface.topology.edges(e, 0))] = false;
-    known[static_cast<std::size_t>(surface.topology.edges(e, 1))] = false;
+    known[surface.topology.edges(e, 0)] = false;
+    known[surface.topology.edges(e, 1)] = false;
   }
   for (Eigen::Index e = 0; e < roughness.size(); ++e) {
     if (std::isnan(roughness[e])) continue;
-    known[static_cast<std::size_t>(surface.topology.edges(e, 0))] = true;
-    known[static_cast<std::size_t>(surface.topology.edges(e, 1))] = true;
+    known[surface.topology.edges(e, 0)] = true;
+    known[surface.topology.edges(e, 1)] = true;
   }
   Smoothness smoothness;
   smoothness.resels = reselsOf(surface.mesh.faces, surface.topology, roughness, known);
   double area = 0;
   for (Eigen::Index f = 0; f < surface.mesh.faceCount(); ++f) {
     bool inside = true;
-    for (int k = 0; k < 3; ++k)
-      inside = inside && known[static_cast<std::size_t>(surface.mesh.faces(f, k))];
+    for (int k = 0; k < 3; ++k) inside = inside && known[surface.mesh.faces(f, k)];
     if (!inside) continue;
     const Vector a = surface.mesh.corner(f, 1) - surface.mesh.corner(f, 0);
     area += a.cross(surface.mesh.corner(f, 2) - surface.mesh.corner(f, 0)).norm() / 2;
@@ -155,24 +126,22 @@ Smoothness smoothnessOf(const PlaceSurface& surface, const Eigen::VectorXd& roug
 }
 
 Inference infer(const Design& design, const Contrast& contrast, const ContrastMaps& maps,
-                const Eigen::MatrixXd* values, const PlaceSurface* surface,
+                const Eigen::MatrixXd& values, const PlaceSurface* surface,
                 const Smoothness* smoothness, const InferenceOptions& options,
                 const Monitor& monitor) {
   Inference inference;
   inference.q = falseDiscoveryRate(maps.p);
   const double df = largestDf(maps);
-  inference.threshold =
-      contrast.isT()
-          ? tQuantile(options.clusterP / 2, df)
-          : fQuantile(options.clusterP, static_cast<double>(contrast.weights.cols()), df);
+  inference.threshold = contrast.isT() ? tQuantile(options.clusterP / 2, df)
+                                       : fQuantile(options.clusterP, numeratorDf(contrast), df);
   if (smoothness != nullptr) inference.field = fieldP(maps, contrast, *smoothness);
   PermutationResult permutation;
-  if (options.permutations > 0 && values != nullptr) {
-    makePermutations(design, contrast, *values, surface, options, monitor, inference, permutation);
+  if (options.permutations.count > 0 && values.size() > 0) {
+    makePermutations(design, contrast, values, surface, options.permutations, monitor, inference,
+                     permutation);
   }
   if (surface != nullptr && df > 0) {
-    const ClusterJudge judge(contrast, inference, permutation, smoothness, df);
-    findAllClusters(maps, contrast, *surface, smoothness, judge, inference);
+    findAllClusters(maps, contrast, *surface, smoothness, df, permutation, inference);
   }
   return inference;
 }

@@ -188,7 +188,7 @@ class Test {
       if (test.graph_ == nullptr) return;
       clusters_.emplace(test.graph_->neighbours, test.graph_->areas);
       if (!test.options_.tfce) return;
-      tfce_.emplace(test.graph_->neighbours, test.graph_->areas, test.options_.tfceOptions);
+      tfce_.emplace(test.graph_->neighbours, test.graph_->areas);
       enhanced_.resize(map_.size());
     }
 

@@ -34,8 +34,7 @@ void forEachBlock(const PlaceBlocks& blocks, const PersonReader& reader,
       parallelFor(std::min(kPeopleAtOnce, people - begin), 1, [&](std::size_t k) {
         Eigen::VectorXd all(blocks.places);
         reader(begin + k, {all.data(), static_cast<std::size_t>(all.size())});
-        values.row(static_cast<Eigen::Index>(begin + k)) =
-            all.segment(first, values.cols()).transpose();
+        values.row(begin + k) = all.segment(first, values.cols()).transpose();
       });
     }
     body(first, values);

@@ -10,25 +10,22 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 namespace explica::statistics {
 namespace {
 
-/// One place's fit.
-struct PlaceFit {
-  Eigen::VectorXd coefficients;
-  Eigen::MatrixXd inverse;  // p x p, covariance of the coefficients over `variance`
-  double variance = kNaN;
-  double ratio = 0;
-};
-
-/// People of a place with a value, and which columns of theirs vary within groups.
+/// People of a place with a value, and what solves their model.
 struct Rows {
   Eigen::MatrixXd design;
   std::vector<int> groups;  // numbered from 0 without gaps, or empty
   int groupCount = 0;
-  std::vector<bool> within;
+  std::vector<bool> within;  // columns of theirs that vary within groups
+  Eigen::MatrixXd inverse;   // (X^T X)^-1; empty with groups
+  Eigen::MatrixXd solver;    // p x N, (X^T X)^-1 X^T
 };
 
 std::vector<bool> variesWithin(const Eigen::MatrixXd& design, const std::vector<int>& groups,
@@ -37,27 +34,34 @@ std::vector<bool> variesWithin(const Eigen::MatrixXd& design, const std::vector<
   for (Eigen::Index c = 0; c < design.cols(); ++c) {
     std::vector<double> first(static_cast<std::size_t>(count), kNaN);
     for (Eigen::Index i = 0; i < design.rows(); ++i) {
-      double& known = first[static_cast<std::size_t>(groups[static_cast<std::size_t>(i)])];
+      double& known = first[groups[i]];
       if (std::isnan(known)) known = design(i, c);
-      if (known != design(i, c)) varies[static_cast<std::size_t>(c)] = true;
+      if (known != design(i, c)) varies[c] = true;
     }
   }
   return varies;
 }
 
-Rows rowsOf(const Eigen::MatrixXd& design, const std::vector<int>& groups,
-            const std::vector<Eigen::Index>& people) {
+Rows rowsOf(const Design& design, const std::vector<Eigen::Index>& people) {
   Rows rows;
-  rows.design.resize(static_cast<Eigen::Index>(people.size()), design.cols());
-  std::vector<int> number(groups.size(), -1);
-  for (std::size_t i = 0; i < people.size(); ++i) {
-    rows.design.row(static_cast<Eigen::Index>(i)) = design.row(people[i]);
-    if (groups.empty()) continue;
-    int& known = number[static_cast<std::size_t>(groups[static_cast<std::size_t>(people[i])])];
+  rows.design = design.matrix(people, Eigen::all);
+  if (design.groups.empty()) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows.design);
+    const Eigen::Index p = rows.design.cols();
+    const Eigen::MatrixXd upper =
+        qr.matrixQR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(
+            Eigen::MatrixXd::Identity(p, p));
+    rows.inverse = upper * upper.transpose();
+    rows.solver = rows.inverse * rows.design.transpose();
+    return rows;
+  }
+  std::vector<int> number(design.groups.size(), -1);
+  for (const Eigen::Index person : people) {
+    int& known = number[design.groups[person]];
     if (known < 0) known = rows.groupCount++;
     rows.groups.push_back(known);
   }
-  if (!groups.empty()) rows.within = variesWithin(rows.design, rows.groups, rows.groupCount);
+  rows.within = variesWithin(rows.design, rows.groups, rows.groupCount);
   return rows;
 }
 
@@ -69,7 +73,7 @@ double dfOf(const Contrast& contrast, const Rows& rows) {
   double within = 0;
   bool onlyBetween = true;
   for (Eigen::Index c = 0; c < rows.design.cols(); ++c) {
-    if (!rows.within[static_cast<std::size_t>(c)]) continue;
+    if (!rows.within[c]) continue;
     ++within;
     if (!contrast.weights.row(c).isZero()) onlyBetween = false;
   }
@@ -98,21 +102,24 @@ void evaluate(const Contrast& contrast, const PlaceFit& fit, double df, Eigen::I
 }
 
 PlaceFit solve(const Rows& rows, const Eigen::VectorXd& y) {
-  PlaceFit fit;
-  if (!rows.groups.empty()) {
-    const RandomInterceptFit mixed = fitRandomIntercept(rows.design, y, rows.groups);
-    return {mixed.coefficients, mixed.inverse, mixed.variance, mixed.ratio};
-  }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rows.design);
-  fit.coefficients = qr.solve(y);
+  if (!rows.groups.empty()) return fitRandomIntercept(rows.design, y, rows.groups);
+  PlaceFit fit{rows.solver * y, rows.inverse};
+  // A second round takes off what rounding left in the span of the design.
+  fit.coefficients += rows.solver * (y - rows.design * fit.coefficients);
   fit.variance = (y - rows.design * fit.coefficients).squaredNorm() /
                  static_cast<double>(rows.design.rows() - rows.design.cols());
-  const Eigen::Index p = rows.design.cols();
-  const Eigen::MatrixXd inverse =
-      qr.matrixQR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(
-          Eigen::MatrixXd::Identity(p, p));
-  fit.inverse = inverse * inverse.transpose();
   return fit;
+}
+
+void fitPlace(const Rows& rows, const std::vector<Contrast>& contrasts, const Eigen::VectorXd& y,
+              Eigen::Index v, ModelMaps& maps) {
+  const PlaceFit fit = solve(rows, y);
+  maps.coefficients.col(v) = fit.coefficients;
+  maps.variance[v] = fit.variance;
+  maps.ratio[v] = fit.ratio;
+  for (std::size_t k = 0; k < contrasts.size(); ++k) {
+    evaluate(contrasts[k], fit, dfOf(contrasts[k], rows), v, maps.contrasts[k]);
+  }
 }
 
 }  // namespace
@@ -124,84 +131,23 @@ ModelMaps::ModelMaps(Eigen::Index columns, Eigen::Index places, std::size_t cont
       people(Eigen::VectorXi::Zero(places)),
       contrasts(contrastCount, ContrastMaps{variance, variance, variance, variance, variance}) {}
 
-struct PlaceModel::Implementation {
-  Eigen::MatrixXd design;
-  std::vector<int> groups;
-  std::vector<Contrast> contrasts;
-  Rows all;                 // of everybody
-  Eigen::MatrixXd inverse;  // (X^T X)^-1
-  Eigen::MatrixXd solver;   // p x N, (X^T X)^-1 X^T
-
-  void fitIncomplete(const Eigen::VectorXd& y, const std::vector<Eigen::Index>& people,
-                     Eigen::Index v, ModelMaps& maps) const {
-    if (static_cast<Eigen::Index>(people.size()) <= design.cols()) return;
-    const Rows rows = rowsOf(design, groups, people);
-    if (rows.design.colPivHouseholderQr().rank() < rows.design.cols()) return;
-    Eigen::VectorXd values(rows.design.rows());
-    for (std::size_t i = 0; i < people.size(); ++i) {
-      values[static_cast<Eigen::Index>(i)] = y[people[i]];
-    }
-    write(solve(rows, values), rows, v, maps);
-  }
-
-  void fitComplete(const Eigen::VectorXd& y, Eigen::Index v, ModelMaps& maps) const {
-    if (!groups.empty()) {
-      write(solve(all, y), all, v, maps);
-      return;
-    }
-    PlaceFit fit;
-    fit.coefficients = solver * y;
-    // A second round takes off what rounding left in the span of the design.
-    fit.coefficients += solver * (y - design * fit.coefficients);
-    fit.variance = (y - design * fit.coefficients).squaredNorm() /
-                   static_cast<double>(design.rows() - design.cols());
-    fit.inverse = inverse;
-    write(fit, all, v, maps);
-  }
-
-  void write(const PlaceFit& fit, const Rows& rows, Eigen::Index v, ModelMaps& maps) const {
-    maps.coefficients.col(v) = fit.coefficients;
-    maps.variance[v] = fit.variance;
-    maps.ratio[v] = fit.ratio;
-    for (std::size_t k = 0; k < contrasts.size(); ++k) {
-      evaluate(contrasts[k], fit, dfOf(contrasts[k], rows), v, maps.contrasts[k]);
-    }
-  }
-};
-
-PlaceModel::PlaceModel(const Design& design, std::vector<Contrast> contrasts)
-    : implementation_(std::make_unique<Implementation>()) {
-  Implementation& m = *implementation_;
-  m.design = design.matrix;
-  m.groups = design.groups;
-  m.contrasts = std::move(contrasts);
+void fitPlaces(const Design& design, const std::vector<Contrast>& contrasts,
+               const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps) {
   std::vector<Eigen::Index> everybody(static_cast<std::size_t>(design.people()));
-  for (std::size_t i = 0; i < everybody.size(); ++i) everybody[i] = static_cast<Eigen::Index>(i);
-  m.all = rowsOf(m.design, m.groups, everybody);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(m.design);
-  const Eigen::Index p = m.design.cols();
-  const Eigen::MatrixXd upper =
-      qr.matrixQR().topLeftCorner(p, p).triangularView<Eigen::Upper>().solve(
-          Eigen::MatrixXd::Identity(p, p));
-  m.inverse = upper * upper.transpose();
-  m.solver = m.inverse * m.design.transpose();
-}
-
-PlaceModel::~PlaceModel() = default;
-
-void PlaceModel::fit(const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps) const {
+  std::iota(everybody.begin(), everybody.end(), 0);
+  const Rows all = rowsOf(design, everybody);
   parallelFor(static_cast<std::size_t>(values.cols()), 64, [&](std::size_t b) {
-    const Eigen::VectorXd y = values.col(static_cast<Eigen::Index>(b));
-    std::vector<Eigen::Index> people;
-    for (Eigen::Index i = 0; i < y.size(); ++i) {
-      if (std::isfinite(y[i])) people.push_back(i);
-    }
+    const Eigen::VectorXd y = values.col(b);
     const Eigen::Index v = first + static_cast<Eigen::Index>(b);
+    std::vector<Eigen::Index> people;
+    std::ranges::copy_if(everybody, std::back_inserter(people),
+                         [&](Eigen::Index i) { return std::isfinite(y[i]); });
     maps.people[v] = static_cast<int>(people.size());
-    if (maps.people[v] == y.size())
-      implementation_->fitComplete(y, v, maps);
-    else
-      implementation_->fitIncomplete(y, people, v, maps);
+    if (maps.people[v] == y.size()) return fitPlace(all, contrasts, y, v, maps);
+    const Eigen::MatrixXd known = design.matrix(people, Eigen::all);
+    if (known.rows() <= known.cols()) return;
+    if (known.colPivHouseholderQr().rank() < known.cols()) return;
+    fitPlace(rowsOf(design, people), contrasts, y(people), v, maps);
   });
 }
 

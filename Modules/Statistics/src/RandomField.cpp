@@ -19,8 +19,7 @@ constexpr double kTailBegins = 3;
 constexpr double kTailSteps = 48;
 
 bool allIn(const std::vector<bool>& mask, const Faces& faces, Eigen::Index f) {
-  return mask[static_cast<std::size_t>(faces(f, 0))] &&
-         mask[static_cast<std::size_t>(faces(f, 1))] && mask[static_cast<std::size_t>(faces(f, 2))];
+  return mask[faces(f, 0)] && mask[faces(f, 1)] && mask[faces(f, 2)];
 }
 
 std::array<double, 3> densitiesOfT(double t, double df) {
@@ -69,8 +68,7 @@ Resels reselsOf(const Faces& faces, const geometry::MeshTopology& topology,
   resels.places = static_cast<double>(std::count(mask.begin(), mask.end(), true));
   double euler = resels.places, halfLength = 0, area = 0;
   for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
-    if (!mask[static_cast<std::size_t>(topology.edges(e, 0))] ||
-        !mask[static_cast<std::size_t>(topology.edges(e, 1))]) {
+    if (!mask[topology.edges(e, 0)] || !mask[topology.edges(e, 1)]) {
       continue;
     }
     euler -= 1;

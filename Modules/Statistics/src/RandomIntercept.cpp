@@ -38,16 +38,16 @@ class Profile {
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(count);
     std::vector<int> sizes(static_cast<std::size_t>(count), 0);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const int g = groups[static_cast<std::size_t>(i)];
+      const int g = groups[i];
       rows.col(g) += x.row(i).transpose();
       sums[g] += residuals[i];
-      ++sizes[static_cast<std::size_t>(g)];
+      ++sizes[g];
     }
-    for (int g = 0; g < count; ++g) add(sizes[static_cast<std::size_t>(g)], rows.col(g), sums[g]);
+    for (int g = 0; g < count; ++g) add(sizes[g], rows.col(g), sums[g]);
   }
 
   /// At a ratio: -2 log restricted likelihood, up to a constant; fills the fit.
-  double evaluate(double ratio, RandomInterceptFit* fit = nullptr) const {
+  double evaluate(double ratio, PlaceFit* fit = nullptr) const {
     Eigen::MatrixXd a = squares_;
     Eigen::VectorXd c = Eigen::VectorXd::Zero(p_);  // X^T residuals is 0
     double q = values_, logDeterminant = 0;
@@ -99,8 +99,8 @@ double ratioOf(double share) {
 
 }  // namespace
 
-RandomInterceptFit fitRandomIntercept(const Eigen::MatrixXd& design, const Eigen::VectorXd& values,
-                                      const std::vector<int>& groups) {
+PlaceFit fitRandomIntercept(const Eigen::MatrixXd& design, const Eigen::VectorXd& values,
+                            const std::vector<int>& groups) {
   const Eigen::VectorXd start = design.householderQr().solve(values);
   const Profile profile(design, values - design * start, groups);
   const auto cost = [&](double share) { return profile.evaluate(ratioOf(share)); };
@@ -116,7 +116,7 @@ RandomInterceptFit fitRandomIntercept(const Eigen::MatrixXd& design, const Eigen
   const auto [share, value] = boost::math::tools::brent_find_minima(
       cost, std::max(best - 1.0 / kSteps, 0.0), std::min(best + 1.0 / kSteps, kMostShare), kBits);
   if (value < least) best = share;
-  RandomInterceptFit fit;
+  PlaceFit fit;
   profile.evaluate(ratioOf(best), &fit);
   fit.coefficients += start;
   return fit;

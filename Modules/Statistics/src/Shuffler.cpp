@@ -41,7 +41,7 @@ std::vector<std::vector<std::int32_t>> members(Eigen::Index people,
                                                const std::vector<int>& blocks) {
   std::map<int, std::vector<std::int32_t>> found;
   for (std::int32_t i = 0; i < people; ++i) {
-    found[blocks.empty() ? 0 : blocks[static_cast<std::size_t>(i)]].push_back(i);
+    found[blocks.empty() ? 0 : blocks[i]].push_back(i);
   }
   std::vector<std::vector<std::int32_t>> lists;
   for (auto& [block, list] : found) lists.push_back(std::move(list));
@@ -56,7 +56,7 @@ std::vector<std::int32_t> decode(std::size_t n, std::uint64_t& code) {
   for (std::size_t k = n; k > 0; --k) {
     const auto place = static_cast<std::ptrdiff_t>(code % k);
     code /= k;
-    order.push_back(left[static_cast<std::size_t>(place)]);
+    order.push_back(left[place]);
     left.erase(left.begin() + place);
   }
   return order;
@@ -74,33 +74,20 @@ std::vector<std::int32_t> shuffled(std::size_t n, Stream& stream) {
 Shuffler::Shuffler(Eigen::Index people, const std::vector<int>& blocks, Exchange exchange,
                    std::int64_t count, std::uint64_t seed)
     : people_(people), signs_(exchange == Exchange::Signs), count_(count + 1), seed_(seed) {
-  if (signs_ && blocks.empty()) {
-    sets_.emplace_back();
-    for (std::int32_t i = 0; i < people; ++i) sets_.back().push_back({i});
-  } else if (signs_) {
-    sets_.push_back(members(people, blocks));
-  } else if (exchange == Exchange::Whole) {
-    groupWhole(members(people, blocks));
-  } else {
-    groupWithin(members(people, blocks));
+  std::map<std::size_t, Set> wholes;  // blocks that move as they are, by size; of signs all
+  for (const auto& block : members(people, blocks)) {
+    if (exchange == Exchange::Whole || (signs_ && !blocks.empty())) {
+      wholes[signs_ ? 0 : block.size()].push_back(block);
+      continue;
+    }
+    Set& set = sets_.emplace_back();
+    for (const std::int32_t person : block) set.push_back({person});
   }
+  for (auto& [size, set] : wholes) sets_.push_back(std::move(set));
   if (possible() <= static_cast<double>(count_)) {
     exhaustive_ = true;
     count_ = std::llround(possible());
   }
-}
-
-void Shuffler::groupWithin(const std::vector<std::vector<std::int32_t>>& blocks) {
-  for (const auto& block : blocks) {
-    sets_.emplace_back();
-    for (const std::int32_t person : block) sets_.back().push_back({person});
-  }
-}
-
-void Shuffler::groupWhole(const std::vector<std::vector<std::int32_t>>& blocks) {
-  std::map<std::size_t, Set> bySize;
-  for (const auto& block : blocks) bySize[block.size()].push_back(block);
-  for (auto& [size, set] : bySize) sets_.push_back(std::move(set));
 }
 
 double Shuffler::possible() const {
@@ -124,15 +111,15 @@ void Shuffler::draw(std::int64_t number, std::span<std::int32_t> order,
       for (const Unit& unit : set) {
         const bool flip = exhaustive_ ? code % 2 == 1 : stream.below(2) == 1;
         code /= 2;
-        for (const std::int32_t i : unit) signs[static_cast<std::size_t>(i)] = flip ? -1.0F : 1.0F;
+        for (const std::int32_t i : unit) signs[i] = flip ? -1.0F : 1.0F;
       }
       continue;
     }
     const auto from = exhaustive_ ? decode(set.size(), code) : shuffled(set.size(), stream);
     for (std::size_t u = 0; u < set.size(); ++u) {
-      const Unit& source = set[static_cast<std::size_t>(from[u])];
+      const Unit& source = set[from[u]];
       for (std::size_t i = 0; i < source.size(); ++i) {
-        order[static_cast<std::size_t>(set[u][i])] = source[i];
+        order[set[u][i]] = source[i];
       }
     }
   }

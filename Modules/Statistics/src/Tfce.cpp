@@ -3,15 +3,12 @@
 #include "Explica/Statistics/Tfce.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace explica::statistics {
 
-Tfce::Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& areas,
-           const TfceOptions& options)
+Tfce::Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& areas)
     : neighbours_(neighbours),
       areas_(areas),
-      options_(options),
       parent_(areas.size()),
       gathered_(areas.size()),
       since_(areas.size()),
@@ -31,20 +28,16 @@ void Tfce::enhanceSide(std::span<const float> values, float sign, std::span<floa
     if (height > 0) order_.emplace_back(-height, static_cast<std::int32_t>(v));
   }
   std::sort(order_.begin(), order_.end());
-  const double power = options_.height + 1;
   for (const auto& [negative, v] : order_) {
     const double height = -static_cast<double>(negative);
-    const double integral =
-        (power == 3 ? height * height * height : std::pow(height, power)) / power;
-    add(v, integral);
+    add(v, height * height * height / 3);
   }
   // A member's value is its own offset and those on the way to its root.
   for (const auto& [negative, v] : order_) {
     const std::int32_t root = rootOf(v);
-    if (since_[static_cast<std::size_t>(root)] != 0) gather(root, 0);
-    const double above = root == v ? 0 : gathered_[static_cast<std::size_t>(root)];
-    enhanced[static_cast<std::size_t>(v)] =
-        sign * static_cast<float>(gathered_[static_cast<std::size_t>(v)] + above);
+    if (since_[root] != 0) gather(root, 0);
+    const double above = root == v ? 0 : gathered_[root];
+    enhanced[v] = sign * static_cast<float>(gathered_[v] + above);
   }
 }
 
@@ -55,7 +48,7 @@ void Tfce::add(std::int32_t v, double integral) {
   since_[i] = integral;
   extent_[i] = areas_[i];
   for (const std::int32_t w : neighbours_[i]) {
-    if (parent_[static_cast<std::size_t>(w)] < 0) continue;
+    if (parent_[w] < 0) continue;
     join(rootOf(v), rootOf(w), integral);
   }
 }
@@ -63,8 +56,7 @@ void Tfce::add(std::int32_t v, double integral) {
 /// Adds to a root what its cluster gains down to a threshold.
 void Tfce::gather(std::int32_t root, double integral) {
   const auto r = static_cast<std::size_t>(root);
-  const double extent = options_.extent == 1 ? extent_[r] : std::pow(extent_[r], options_.extent);
-  gathered_[r] += extent * (since_[r] - integral);
+  gathered_[r] += extent_[r] * (since_[r] - integral);
   since_[r] = integral;
 }
 
@@ -72,11 +64,11 @@ void Tfce::gather(std::int32_t root, double integral) {
 std::int32_t Tfce::rootOf(std::int32_t v) {
   std::int32_t root = v;
   double offset = 0;
-  while (parent_[static_cast<std::size_t>(root)] != root) {
-    offset += gathered_[static_cast<std::size_t>(root)];
-    root = parent_[static_cast<std::size_t>(root)];
+  while (parent_[root] != root) {
+    offset += gathered_[root];
+    root = parent_[root];
   }
-  while (parent_[static_cast<std::size_t>(v)] != root && v != root) {
+  while (parent_[v] != root && v != root) {
     const auto i = static_cast<std::size_t>(v);
     const std::int32_t next = parent_[i];
     const double own = gathered_[i];
@@ -90,7 +82,7 @@ std::int32_t Tfce::rootOf(std::int32_t v) {
 
 void Tfce::join(std::int32_t a, std::int32_t b, double integral) {
   if (a == b) return;
-  if (extent_[static_cast<std::size_t>(a)] < extent_[static_cast<std::size_t>(b)]) std::swap(a, b);
+  if (extent_[a] < extent_[b]) std::swap(a, b);
   gather(a, integral);
   gather(b, integral);
   const auto under = static_cast<std::size_t>(b), root = static_cast<std::size_t>(a);

@@ -113,7 +113,7 @@ TEST(Oracles, LinearModelsHaveTheirCoefficientsAndResiduals) {
     const Design design = designOf(in.at("in.M").matrix());
     const Eigen::Index n = y.extent(0), places = y.extent(1), variates = y.extent(2);
     ModelMaps maps(design.matrix.cols(), places * variates, 0);
-    PlaceModel(design, {}).fit(y.matrix(n), 0, maps);
+    fitPlaces(design, {}, y.matrix(n), 0, maps);
     const Eigen::MatrixXd theirs = b.matrix(b.extent(0)), squares = sse.matrix();
     for (Eigen::Index v = 0; v < places; ++v) {
       for (Eigen::Index k = 0; k < variates; ++k) {
@@ -134,7 +134,7 @@ TEST(Oracles, AWholeBrainsResidualsAreAsRoughAlongEveryEdge) {
   const Eigen::MatrixXd y = in.at("in.Y").matrix();
   const Design design = designOf(in.at("in.M").vector());
   ModelMaps maps(1, y.cols(), 0);
-  PlaceModel(design, {}).fit(y, 0, maps);
+  fitPlaces(design, {}, y, 0, maps);
   const Eigen::VectorXd theirs = in.at("out.coef").vector(), sse = in.at("out.SSE").vector();
   for (Eigen::Index v = 0; v < y.cols(); ++v) {
     expectClose(maps.coefficients(0, v), theirs[v]);
@@ -178,7 +178,7 @@ TEST(Oracles, TOfContrasts) {
     y.row(p) += sse.cwiseSqrt().transpose();
     const Contrast contrast{"c", "c", in.at("out.c").vector()};
     ModelMaps maps(p, y.cols(), 1);
-    PlaceModel(design, {contrast}).fit(y, 0, maps);
+    fitPlaces(design, {contrast}, y, 0, maps);
     for (Eigen::Index v = 0; v < y.cols(); ++v) {
       expectClose(maps.contrasts[0].effect[v], in.at("out.ef").vector()[v]);
       expectClose(maps.contrasts[0].error[v], in.at("out.sd").vector()[v]);
@@ -206,7 +206,7 @@ TEST(Oracles, FOfNestedModels) {
       y.topRows(kTested).setConstant(std::sqrt((small[v] - large[v]) / kTested));
       y.bottomRows(kRest).setConstant(std::sqrt(large[v] / kRest));
       ModelMaps maps(kTested, 1, 1);
-      PlaceModel(design, {contrast}).fit(y, 0, maps);
+      fitPlaces(design, {contrast}, y, 0, maps);
       expectClose(maps.contrasts[0].statistic[0], f[v]);
       ++compared;
     }

@@ -38,7 +38,7 @@ Contrast column(Eigen::Index p, Eigen::Index c) {
 
 Eigen::VectorXd statisticOf(const Design& d, const Contrast& c, const Eigen::MatrixXd& y) {
   ModelMaps maps(d.matrix.cols(), y.cols(), 1);
-  PlaceModel(d, {c}).fit(y, 0, maps);
+  fitPlaces(d, {c}, y, 0, maps);
   return maps.contrasts[0].statistic;
 }
 

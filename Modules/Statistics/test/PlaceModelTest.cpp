@@ -30,7 +30,7 @@ TEST(PlaceModel, TwoGroupsAreStudentsTest) {
   const Design d = twoGroups(7);
   const Eigen::MatrixXd y = normalMatrix(14, 5, 1).array() + 2.5;
   ModelMaps maps(2, 5, 1);
-  PlaceModel(d, {second(d)}).fit(y, 0, maps);
+  fitPlaces(d, {second(d)}, y, 0, maps);
   for (Eigen::Index v = 0; v < 5; ++v) {
     const Eigen::VectorXd a = y.col(v).head(7), b = y.col(v).tail(7);
     const double pooled =
@@ -56,7 +56,7 @@ TEST(PlaceModel, FOfSeveralGroupsIsTheAnalysisOfVariance) {
   const Contrast f{"f", "f", Eigen::MatrixXd::Identity(3, 3).rightCols(2)};
   const Eigen::MatrixXd y = normalMatrix(12, 1, 2);
   ModelMaps maps(3, 1, 1);
-  PlaceModel(d, {f}).fit(y, 0, maps);
+  fitPlaces(d, {f}, y, 0, maps);
   double between = 0, within = 0;
   for (int g = 0; g < 3; ++g) {
     const Eigen::VectorXd part = y.col(0).segment(4 * g, 4);
@@ -73,7 +73,7 @@ TEST(PlaceModel, PartialCorrelationIsThatOfResiduals) {
   d.matrix.col(0).setOnes();
   const Eigen::MatrixXd y = normalMatrix(30, 1, 4);
   ModelMaps maps(4, 1, 1);
-  PlaceModel(d, {second(d)}).fit(y, 0, maps);
+  fitPlaces(d, {second(d)}, y, 0, maps);
   Eigen::MatrixXd rest(30, 3);
   rest << d.matrix.col(0), d.matrix.rightCols(2);
   const auto residual = [&](const Eigen::VectorXd& v) {
@@ -89,13 +89,13 @@ TEST(PlaceModel, APlaceWithoutSomePeopleIsFittedToTheOthers) {
   y(3, 1) = kNaN;
   y(12, 1) = kNaN;
   ModelMaps maps(2, 2, 1), alone(2, 1, 1);
-  PlaceModel(d, {second(d)}).fit(y, 0, maps);
+  fitPlaces(d, {second(d)}, y, 0, maps);
   Design fewer = twoGroups(7);
   Eigen::MatrixXd rest(14, 1);
   for (Eigen::Index i = 0, k = 0; i < 16; ++i) {
     if (i != 3 && i != 12) rest(k++, 0) = y(i, 1);
   }
-  PlaceModel(fewer, {second(fewer)}).fit(rest, 0, alone);
+  fitPlaces(fewer, {second(fewer)}, rest, 0, alone);
   EXPECT_EQ(maps.people[1], 14);
   EXPECT_EQ(maps.contrasts[0].df[1], 12);
   EXPECT_NEAR(maps.contrasts[0].statistic[1], alone.contrasts[0].statistic[0], 1e-12);
@@ -106,7 +106,7 @@ TEST(PlaceModel, APlaceWhereAGroupIsMissingHasNoEffect) {
   Eigen::MatrixXd y = normalMatrix(8, 1, 6);
   y.topRows(4).setConstant(kNaN);
   ModelMaps maps(2, 1, 1);
-  PlaceModel(d, {second(d)}).fit(y, 0, maps);
+  fitPlaces(d, {second(d)}, y, 0, maps);
   EXPECT_TRUE(std::isnan(maps.contrasts[0].statistic[0]));
 }
 
@@ -123,8 +123,8 @@ TEST(PlaceModel, RandomInterceptsOfABalancedLayoutHaveAClosedForm) {
     y(i, 0) += 2 * own(i / kEach, 0);
   }
   ModelMaps maps(2, 1, 2);
-  PlaceModel(d, {{"mean", "", Eigen::Vector2d(1, 0)}, {"time", "", Eigen::Vector2d(0, 1)}})
-      .fit(y, 0, maps);
+  fitPlaces(d, {{"mean", "", Eigen::Vector2d(1, 0)}, {"time", "", Eigen::Vector2d(0, 1)}}, y, 0,
+            maps);
   const double slope = d.matrix.col(1).dot(y.col(0)) / d.matrix.col(1).squaredNorm();
   const Eigen::VectorXd r = y.col(0) - slope * d.matrix.col(1);
   double within = 0, between = 0;
@@ -150,7 +150,7 @@ TEST(PlaceModel, GroupsThatDoNotDifferHaveNoVariance) {
   Eigen::MatrixXd y(8, 1);
   y << 1, -1, 1, -1, 1, -1, 1, -1;
   ModelMaps maps(1, 1, 1);
-  PlaceModel(d, {{"mean", "", Eigen::VectorXd::Ones(1)}}).fit(y, 0, maps);
+  fitPlaces(d, {{"mean", "", Eigen::VectorXd::Ones(1)}}, y, 0, maps);
   EXPECT_EQ(maps.ratio[0], 0);
 }
 
@@ -163,14 +163,6 @@ TEST(FalseDiscoveryRate, OfFourValues) {
   EXPECT_NEAR(q[0], 0.04 * 4 / 3, 1e-15);
   EXPECT_NEAR(q[4], 0.9, 1e-15);
   EXPECT_TRUE(std::isnan(q[2]));
-}
-
-TEST(FalseDiscoveryRate, WeightsCountAPlaceSeveralTimes) {
-  Eigen::VectorXd p(2), twice(3), weights(2);
-  p << 0.01, 0.3;
-  twice << 0.01, 0.01, 0.3;
-  weights << 2, 1;
-  EXPECT_EQ(falseDiscoveryRate(p, weights)[0], falseDiscoveryRate(twice)[0]);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST(RealPeople, AbideThinsWithAge) {
   ASSERT_EQ(joined.rows.size(), 1035U);
   const Design design = buildDesign(parseFormula("mean ~ age + site"), joined);
   ModelMaps maps(design.matrix.cols(), 1, 1);
-  PlaceModel(design, {parseContrast("age", design)}).fit(valuesOf(joined, {2}), 0, maps);
+  fitPlaces(design, {parseContrast("age", design)}, valuesOf(joined, {2}), 0, maps);
   EXPECT_NEAR(10 * maps.contrasts[0].effect[0], -0.145, 0.0005);
   EXPECT_NEAR(maps.contrasts[0].statistic[0], -20.25510, 1e-5);  // as numpy has it
 }
@@ -68,7 +68,7 @@ TEST(RealPeople, AdolescentsThinInMostRegions) {
   }
   const Design design = buildDesign(parseFormula("age_scan"), table);
   ModelMaps maps(2, static_cast<Eigen::Index>(regions.size()), 1);
-  PlaceModel(design, {parseContrast("age_scan", design)}).fit(valuesOf(table, regions), 0, maps);
+  fitPlaces(design, {parseContrast("age_scan", design)}, valuesOf(table, regions), 0, maps);
   const Eigen::VectorXd& t = maps.contrasts[0].statistic;
   EXPECT_EQ(design.people(), 297);
   EXPECT_EQ((t.array() < -3).count(), 232) << regions.size() << " regions";

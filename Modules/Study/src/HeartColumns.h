@@ -2,12 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Study/HeartStudy.h"
-
-#include <map>
-#include <string>
-#include <vector>
-
 namespace explica::study {
 
 /// A column of a heart's numbers.
@@ -16,12 +10,5 @@ struct HeartColumn {
   const char* unit;
   const char* meaning;
 };
-
-/// What participants.tsv says of anybody, by name.
-[[nodiscard]] std::vector<std::string> aboutColumns(const std::vector<HeartRow>& rows);
-
-/// "n/a" where there is none.
-[[nodiscard]] std::string valueIn(const std::map<std::string, std::string>& values,
-                                  const std::string& key);
 
 }  // namespace explica::study

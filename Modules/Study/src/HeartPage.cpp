@@ -38,34 +38,34 @@ body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper)
 td.n{text-align:right}th{background:var(--soft)}tr.bad{background:var(--bad)}td.wide{padding:8px 10px 20px}img{height:460px;background:#fff}a{color:var(--link)})";
 
 /// A line of numbers, and below it the pictures or what went wrong.
-std::string pageRow(const HeartRow& row, const std::vector<std::string>& about) {
+std::string pageRow(const StudyRow& row, const std::vector<std::string>& about) {
   const std::size_t colon = row.state.find(": ");
   const std::string open = row.state == "done" ? "<tr><td>" : "<tr class=\"bad\"><td>";
-  std::string text =
-      open + escapeHtml(row.name) + "</td><td>" + escapeHtml(row.state.substr(0, colon)) + "</td>";
+  std::string text = open + escapeHtml(row.participant) + "</td><td>" +
+                     escapeHtml(row.state.substr(0, colon)) + "</td>";
   for (const std::string& name : about) {
-    text += "<td>" + escapeHtml(valueIn(row.about, name)) + "</td>";
+    text += "<td>" + escapeHtml(valueIn(row, name)) + "</td>";
   }
   for (const HeartColumn& column : kShown) {
-    text += "<td class=\"n\">" + escapeHtml(rounded(valueIn(row.values, column.key))) + "</td>";
+    text += "<td class=\"n\">" + escapeHtml(rounded(valueIn(row, column.key))) + "</td>";
   }
   text += "</tr>\n<tr><td class=\"wide\" colspan=\"" +
           std::to_string(2 + about.size() + std::size(kShown)) + "\">";
   if (colon != std::string::npos) text += escapeHtml(row.state.substr(colon + 2));
-  if (row.pictured) {
-    const std::string folder = escapeHtml(row.folder.generic_string());
-    text += "<a href=\"" + folder + "/bullseye.svg\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
-            escapeHtml(row.name) + "\" src=\"" + folder + "/bullseye.svg\"></a>";
+  if (!row.thumbnail.empty()) {
+    const std::string picture = escapeHtml(row.thumbnail.generic_string());
+    text += "<a href=\"" + picture + "\"><img loading=\"lazy\" alt=\"bull's-eyes of " +
+            escapeHtml(row.participant) + "\" src=\"" + picture + "\"></a>";
   }
   return text + "</td></tr>\n";
 }
 
 }  // namespace
 
-std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title) {
+std::string heartPage(const std::vector<StudyRow>& rows, const std::string& title) {
   const std::vector<std::string> about = aboutColumns(rows);
   const auto done =
-      std::ranges::count_if(rows, [](const HeartRow& row) { return row.state == "done"; });
+      std::ranges::count_if(rows, [](const StudyRow& row) { return row.state == "done"; });
   std::string text =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><link rel=\"icon\" href=\"data:,\"><title>" +
@@ -76,12 +76,14 @@ std::string heartPage(const std::vector<HeartRow>& rows, const std::string& titl
       "each folder holds what healthy adults have beside it (reference.tsv).</p>\n"
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" "
       "aria-label=\"hearts\"><table><tr><th>heart</th><th>state</th>";
-  for (const std::string& name : about) text += "<th>" + escapeHtml(name) + "</th>";
+  for (const std::string& name : about) {
+    text += "<th>" + escapeHtml(name.substr(kAboutPrefix.size())) + "</th>";
+  }
   for (const HeartColumn& column : kShown) {
     text += std::string("<th>") + column.meaning + ", " + column.unit + "</th>";
   }
   text += "</tr>\n";
-  for (const HeartRow& row : rows) text += pageRow(row, about);
+  for (const StudyRow& row : rows) text += pageRow(row, about);
   return text + "</table></div>\n</main></body></html>\n";
 }
 

@@ -8,13 +8,11 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/Text.h"
 #include "Explica/Provenance/Json.h"
-#include "Explica/Study/StudyTable.h"
 #include "HeartColumns.h"
 
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <sstream>
 
 namespace explica::study {
 namespace {
@@ -106,7 +104,7 @@ constexpr HeartColumn kColumns[] = {
     {"frame_es", "", "number of the end-systolic frame"}};
 
 /// Thickness of the segments at both phases, and thickening.
-void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
+void addSegments(StudyRow& row, const fs::path& file, const Json& summary) {
   if (!isThere(file)) return;
   const auto phase = [&](const char* key) {
     return summary.contains(key) ? cellOf(summary[key]) : std::string();
@@ -124,19 +122,13 @@ void addSegments(HeartRow& row, const fs::path& file, const Json& summary) {
   }
 }
 
-HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
-  HeartRow row;
-  row.name = subject.name;
-  row.folder = subject.folder / "heart";
-  const fs::path folder = out / row.folder;
+StudyRow rowOf(const fs::path& out, const HeartSubject& subject) {
+  StudyRow row;
+  row.participant = subject.name;
+  const fs::path folder = out / subject.folder / "heart";
+  row.state = problemIn(folder);
+  if (!row.state.empty()) return row;
   row.state = "not begun";
-  if (isThere(folder / "problem.txt")) {
-    std::istringstream problem(fileText(folder / "problem.txt"));
-    std::string why;
-    std::getline(problem, why);
-    row.state = why == "interrupted" ? why : "failed: " + why;
-    return row;
-  }
   if (!isThere(folder / "summary.json")) return row;
   try {
     const Json summary = provenance::readJson(folder / "summary.json");
@@ -151,13 +143,13 @@ HeartRow rowOf(const fs::path& out, const HeartSubject& subject) {
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
-  row.pictured = isThere(folder / "bullseye.png");
+  if (isThere(folder / "bullseye.png")) row.thumbnail = subject.folder / "heart/bullseye.svg";
   return row;
 }
 
-std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
+std::vector<std::string> segmentColumns(const std::vector<StudyRow>& rows) {
   std::set<std::string> names;
-  for (const HeartRow& row : rows) {
+  for (const StudyRow& row : rows) {
     for (const auto& [name, value] : row.values) {
       if (name.starts_with("segment_")) names.insert(name);
     }
@@ -166,19 +158,6 @@ std::vector<std::string> segmentColumns(const std::vector<HeartRow>& rows) {
 }
 
 }  // namespace
-
-std::vector<std::string> aboutColumns(const std::vector<HeartRow>& rows) {
-  std::set<std::string> names;
-  for (const HeartRow& row : rows) {
-    for (const auto& [name, value] : row.about) names.insert(name);
-  }
-  return {names.begin(), names.end()};
-}
-
-std::string valueIn(const std::map<std::string, std::string>& values, const std::string& key) {
-  const auto found = values.find(key);
-  return found == values.end() || found->second.empty() ? "n/a" : found->second;
-}
 
 std::vector<HeartSubject> findHearts(const fs::path& dataset,
                                      const std::vector<std::string>& wanted,
@@ -225,38 +204,41 @@ std::map<std::string, TableRow> aboutParticipants(const fs::path& dataset) {
   return about;
 }
 
-std::vector<HeartRow> heartRows(const fs::path& out, const std::vector<HeartSubject>& subjects,
+std::vector<StudyRow> heartRows(const fs::path& out, const std::vector<HeartSubject>& subjects,
                                 const std::map<std::string, TableRow>& about) {
-  std::vector<HeartRow> rows;
+  std::vector<StudyRow> rows;
   for (const HeartSubject& subject : subjects) {
     rows.push_back(rowOf(out, subject));
+    std::map<std::string, std::string>& values = rows.back().values;
     const auto known = about.find(subject.folder.begin()->string());
-    if (known != about.end()) rows.back().about = known->second;
+    for (const auto& [name, value] : known == about.end() ? TableRow{} : known->second) {
+      values[std::string(kAboutPrefix) + name] = value;
+    }
+    std::erase_if(values, [](const auto& value) { return value.second.empty(); });
   }
   return rows;
 }
 
-std::string heartTable(const std::vector<HeartRow>& rows) {
+std::string heartTable(const std::vector<StudyRow>& rows) {
   const std::vector<std::string> about = aboutColumns(rows), segments = segmentColumns(rows);
   std::string text = "participant_id";
-  for (const std::string& name : about) text += '\t' + cellText(name);
+  for (const std::string& name : about) text += '\t' + cellText(name.substr(kAboutPrefix.size()));
   text += "\tstate";
   for (const HeartColumn& column : kColumns) text += std::string("\t") + column.key;
   for (const std::string& name : segments) text += '\t' + name;
   text += '\n';
-  for (const HeartRow& row : rows) {
-    text += cellText(row.name);
-    for (const std::string& name : about) text += '\t' + cellText(valueIn(row.about, name));
+  for (const StudyRow& row : rows) {
+    text += cellText(row.participant);
+    for (const std::string& name : about) text += '\t' + cellText(valueIn(row, name));
     text += '\t' + cellText(row.state);
-    for (const HeartColumn& column : kColumns)
-      text += '\t' + cellText(valueIn(row.values, column.key));
-    for (const std::string& name : segments) text += '\t' + valueIn(row.values, name);
+    for (const HeartColumn& column : kColumns) text += '\t' + cellText(valueIn(row, column.key));
+    for (const std::string& name : segments) text += '\t' + valueIn(row, name);
     text += '\n';
   }
   return text;
 }
 
-std::string heartColumns(const std::vector<HeartRow>& rows) {
+std::string heartColumns(const std::vector<StudyRow>& rows) {
   Json columns = Json::object();
   columns["state"] = {{"Description", "done, or what became of the run and why"}};
   for (const HeartColumn& column : kColumns) {

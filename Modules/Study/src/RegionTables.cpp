@@ -67,12 +67,7 @@ bool isRegionMean(const std::string& column) {
 }
 
 std::string regionsText(const std::vector<StudyRow>& rows) {
-  std::set<std::string> about;
-  for (const StudyRow& row : rows) {
-    for (const auto& [column, value] : row.values) {
-      if (column.starts_with(kAboutPrefix)) about.insert(column);
-    }
-  }
+  const std::vector<std::string> about = aboutColumns(rows);
   std::string text = "participant_id\themisphere\tatlas\tregion\tmeasure\tvalue\tunit\tstate";
   for (const std::string& column : about) text += "\t" + column;
   text += "\n";
@@ -80,10 +75,7 @@ std::string regionsText(const std::vector<StudyRow>& rows) {
   for (const StudyRow& row : rows) {
     if (row.regions.empty() || !done.insert(row.participant + row.hemisphere).second) continue;
     std::string end = "\t" + row.state.substr(0, row.state.find(':'));
-    for (const std::string& column : about) {
-      const auto value = row.values.find(column);
-      end += "\t" + (value == row.values.end() ? "n/a" : value->second);
-    }
+    for (const std::string& column : about) end += "\t" + valueIn(row, column);
     for (const RegionNumber& number : row.regions) {
       text += row.participant + "\t" + row.hemisphere + "\t" + number.atlas + "\t" + number.region +
               "\t" + number.measure + "\t" + number.value + "\t" + number.unit + end + "\n";

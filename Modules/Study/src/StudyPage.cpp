@@ -57,10 +57,7 @@ Json rowJson(const StudyRow& row, const std::vector<StudyFlag>& flags, bool regi
   Json cells = Json::array({row.participant, row.hemisphere});
   if (regions) cells.push_back(row.region);
   cells.push_back(row.state);
-  for (const auto& column : columns) {
-    const auto value = row.values.find(column);
-    cells.push_back(value == row.values.end() ? "n/a" : value->second);
-  }
+  for (const auto& column : columns) cells.push_back(valueIn(row, column));
   Json marks = Json::object();
   for (const StudyFlag& flag : flags) {
     const auto at = std::ranges::find(columns, flag.column);

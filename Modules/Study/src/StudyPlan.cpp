@@ -47,21 +47,19 @@ Json withPrefix(const Json& object, const std::string& prefix) {
   return prefixed;
 }
 
-Eigen::Vector3d vectorOf(const Json& values, std::size_t from = 0) {
-  return {values.at(from).get<double>(), values.at(from + 1).get<double>(),
-          values.at(from + 2).get<double>()};
-}
-
-Json arrayOf(const Eigen::Vector3d& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
-/// A point moved, or each of a list of points.
+/// Points moved: the coordinates of one or several in a row, or a list of points.
 template <class Move>
 Json moved(const Json& points, const Move& move) {
-  if (points.empty() || !points.front().is_array()) return arrayOf(move(vectorOf(points)));
   Json all = Json::array();
-  for (const Json& point : points) all.push_back(arrayOf(move(vectorOf(point))));
+  if (!points.empty() && points.front().is_array()) {
+    for (const Json& point : points) all.push_back(moved(point, move));
+    return all;
+  }
+  for (std::size_t from = 0; from + 3 <= points.size(); from += 3) {
+    const Eigen::Vector3d to =
+        move(Eigen::Vector3d(points[from], points[from + 1], points[from + 2]));
+    for (const double x : to) all.push_back(x);
+  }
   return all;
 }
 
@@ -259,26 +257,16 @@ class Planner {
     const Eigen::Matrix4d back = toCommonOf(own, label, place).inverse();
     const Eigen::Matrix3d turn = back.topLeftCorner<3, 3>();
     const Eigen::Vector3d shift = back.topRightCorner<3, 1>();
-    for (const char* point : {"center", "viewpoint"}) {
-      if (region.contains(point)) {
-        region[point] = moved(region[point], [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
-          return turn * p + shift;
-        });
-      }
+    for (const char* point : {"center", "viewpoint", "view-line"}) {
+      if (!region.contains(point)) continue;
+      region[point] = moved(region[point], [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+        return turn * p + shift;
+      });
     }
     if (region.contains("direction")) {
       region["direction"] = moved(
           region["direction"],
           [&](const Eigen::Vector3d& d) -> Eigen::Vector3d { return (turn * d).normalized(); });
-    }
-    if (region.contains("view-line")) {
-      Json line = Json::array();
-      for (std::size_t from = 0; from + 3 <= region["view-line"].size(); from += 3) {
-        for (const Json& x : arrayOf(turn * vectorOf(region["view-line"], from) + shift)) {
-          line.push_back(x);
-        }
-      }
-      region["view-line"] = line;
     }
     return region;
   }

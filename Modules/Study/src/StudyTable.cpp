@@ -125,25 +125,6 @@ void addRating(StudyRow& row, const fs::path& out, const fs::path& run) {
   }
 }
 
-/// A run's folder as it is, in the form of kKeptName; or what was kept of it.
-Json accountOf(const fs::path& run) {
-  if (isThere(run / kKeptName)) return provenance::readJson(run / kKeptName);
-  const auto read = [](const fs::path& file) {
-    return isThere(file) ? provenance::readJson(file) : Json();
-  };
-  Json all = {{"run", read(run / "run.json")}, {"steps", Json::object()}};
-  for (const char* step : kSteps) {
-    Json summary = read(run / step / "summary.json");
-    if (!summary.is_null()) all["steps"][step] = std::move(summary);
-  }
-  for (const auto& [name, step] :
-       {std::pair{"surface_regions", "surface"}, {"regions", "regions"}}) {
-    const fs::path regions = run / step / "regions.tsv";
-    if (isThere(regions)) all[name] = fileText(regions);
-  }
-  return all;
-}
-
 StudyRow rowOf(const fs::path& out, const fs::path& run) {
   StudyRow row;
   const std::string name = run.filename().string();
@@ -169,12 +150,7 @@ StudyRow rowOf(const fs::path& out, const fs::path& run) {
   } catch (const std::exception& fault) {  // a damaged file is a fact of the study, not its end
     row.state = std::string("failed: ") + fault.what();
   }
-  if (isThere(run / "problem.txt")) {
-    std::istringstream file(fileText(run / "problem.txt"));
-    std::string problem;
-    std::getline(file, problem);
-    row.state = problem == "interrupted" ? problem : "failed: " + problem;
-  }
+  if (const std::string problem = problemIn(run); !problem.empty()) row.state = problem;
   if (isThere(run / "report.html")) row.report = fs::relative(run / "report.html", out);
   if (isThere(run / "thumbnail.png")) row.thumbnail = fs::relative(run / "thumbnail.png", out);
   return row;
@@ -235,6 +211,37 @@ std::string cellText(std::string text) {
   return text;
 }
 
+std::string valueIn(const StudyRow& row, const std::string& column) {
+  const auto value = row.values.find(column);
+  return value == row.values.end() ? "n/a" : value->second;
+}
+
+std::string problemIn(const fs::path& run) {
+  if (!isThere(run / "problem.txt")) return "";
+  std::istringstream file(fileText(run / "problem.txt"));
+  std::string problem;
+  std::getline(file, problem);
+  return problem == "interrupted" ? problem : "failed: " + problem;
+}
+
+Json accountOf(const fs::path& run) {
+  if (isThere(run / kKeptName)) return provenance::readJson(run / kKeptName);
+  const auto read = [](const fs::path& file) {
+    return isThere(file) ? provenance::readJson(file) : Json();
+  };
+  Json all = {{"run", read(run / "run.json")}, {"steps", Json::object()}};
+  for (const char* step : kSteps) {
+    Json summary = read(run / step / "summary.json");
+    if (!summary.is_null()) all["steps"][step] = std::move(summary);
+  }
+  for (const auto& [name, step] :
+       {std::pair{"surface_regions", "surface"}, {"regions", "regions"}}) {
+    const fs::path regions = run / step / "regions.tsv";
+    if (isThere(regions)) all[name] = fileText(regions);
+  }
+  return all;
+}
+
 std::vector<StudyRow> collectRows(const fs::path& out, const std::string& subject) {
   const fs::path runs = out / "runs";
   if (!isFolder(runs)) {
@@ -265,6 +272,16 @@ bool isCompared(const std::string& column) {
 bool isFirst(const std::string& column) {
   const KnownColumn* known = knownColumn(column);
   return known && known->first;
+}
+
+std::vector<std::string> aboutColumns(const std::vector<StudyRow>& rows) {
+  std::set<std::string> about;
+  for (const StudyRow& row : rows) {
+    for (const auto& [column, value] : row.values) {
+      if (column.starts_with(kAboutPrefix)) about.insert(column);
+    }
+  }
+  return {about.begin(), about.end()};
 }
 
 std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows) {
@@ -334,10 +351,7 @@ std::string textOf(const std::vector<StudyRow>& rows, const std::vector<std::str
     }
     text += "\t" + row.state;
     if (withFlags) text += "\t" + (marks.empty() ? "n/a" : marks);
-    for (const auto& column : columns) {
-      const auto value = row.values.find(column);
-      text += "\t" + (value == row.values.end() ? "n/a" : value->second);
-    }
+    for (const auto& column : columns) text += "\t" + valueIn(row, column);
     text += "\n";
   }
   return text;

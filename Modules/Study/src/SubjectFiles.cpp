@@ -77,11 +77,6 @@ SubjectFiles inFreeSurferSubject(const fs::path& subject) {
   return files;
 }
 
-bool endsWith(const std::string& text, std::string_view ending) {
-  return text.size() >= ending.size() &&
-         text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 /// Files of one anat folder, asked by the end of their names.
 class AnatFolder {
  public:
@@ -98,7 +93,7 @@ class AnatFolder {
   [[nodiscard]] Found ending(std::string_view end, std::string_view entity = "") const {
     for (const fs::path& file : files_) {
       const std::string name = file.filename().string();
-      if (endsWith(name, end) && name.find(entity) != std::string::npos) return file;
+      if (name.ends_with(end) && name.find(entity) != std::string::npos) return file;
     }
     return std::nullopt;
   }
@@ -113,7 +108,7 @@ class AnatFolder {
   [[nodiscard]] Found t1(std::vector<std::string>& remarks) const {
     std::vector<fs::path> found;
     std::ranges::copy_if(files_, std::back_inserter(found), [](const fs::path& file) {
-      return endsWith(file.string(), "_T1w.nii.gz") || endsWith(file.string(), "_T1w.nii");
+      return file.string().ends_with("_T1w.nii.gz") || file.string().ends_with("_T1w.nii");
     });
     if (found.empty()) return std::nullopt;
     std::ranges::stable_partition(found, [](const fs::path& file) {

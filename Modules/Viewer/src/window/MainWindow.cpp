@@ -70,13 +70,6 @@ QAction* MainWindow::addAction(QMenu* menu, const char* name, const QString& tex
   return action;
 }
 
-std::function<void()> MainWindow::underPointer(void (MainWindow::*work)(int, int)) {
-  return [this, work] {
-    const QPoint at = fromLowerLeft(pointer_);
-    (this->*work)(at.x(), at.y());
-  };
-}
-
 void MainWindow::buildMenus() {
   QMenu* file = menuBar()->addMenu("&File");
   addAction(file, "open", "&Open map or labels ...", QKeySequence::Open, [this] {
@@ -98,7 +91,7 @@ void MainWindow::buildMenus() {
 
   QMenu* edit = menuBar()->addMenu("&Choose");
   addAction(edit, "centre", "&Centre under the pointer", QKeySequence("C"),
-            underPointer(&MainWindow::pickCentre));
+            [this] { pickCentre(); });
   addAction(edit, "view", "Present &view is the viewpoint", QKeySequence("V"),
             [this] { takeView(); });
   addAction(edit, "undo", "&Undo the last choice", QKeySequence::Undo, [this] { undo(); });
@@ -266,8 +259,8 @@ void MainWindow::undo() {
   refresh();
 }
 
-void MainWindow::pickCentre(int x, int y) {
-  const auto picked = stage_->pick(x, y);
+void MainWindow::pickCentre() {
+  const auto picked = pick();
   if (!picked) {
     statusBar()->showMessage("There is no surface under the pointer.");
     return;
@@ -290,14 +283,15 @@ void MainWindow::takeRegion() {
     if (panels_.regionKey->property("source") != source) {
       filling_ = true;
       panels_.regionKey->clear();
-      for (const auto& [key, name] : labels.names) {
-        if (key != 0) panels_.regionKey->addItem(QString::fromStdString(name), key);
+      for (const io::LabelEntry& entry : labels.table) {
+        if (entry.key == 0) continue;
+        panels_.regionKey->addItem(QString::fromStdString(entry.name), entry.key);
       }
       panels_.regionKey->setProperty("source", source);
       filling_ = false;
     }
     const int key = panels_.regionKey->currentData().toInt();
-    for (const std::int32_t k : labels.keys) choice.marked.push_back(k == key);
+    for (const Label k : labels.keys) choice.marked.push_back(k == key);
     choice.markedOptions = {{"label", labels.file}, {"label-key", std::to_string(key)}};
   }
   choose(std::move(choice));

@@ -36,15 +36,15 @@ class MainWindow : public QMainWindow {
 
   // What menus, keys and scripts do.
   void open(const std::string& path);
-  void pickCentre(int x, int y);  ///< pixels of the view from its lower left
+  void pickCentre();  ///< under the pointer
   void step(std::size_t state);
   void savePicture(const QString& path);
   /// @return false if there is no such action, or no such field
   bool act(const QString& action);
   bool set(const QString& field, const QString& value);
   void press(const QString& key, int x, int y);
-  void drag(int x0, int y0, int x1, int y1);
-  void turn(int pictures);  ///< the surface, with the pointer held, so many pictures long
+  /// With the pointer held over these places of the view, pixels from its lower left.
+  void drag(const std::vector<QPointF>& places);
 
   [[nodiscard]] const Session& session() const { return session_; }
   [[nodiscard]] bool isSaving() const { return saving_.valid(); }
@@ -59,7 +59,6 @@ class MainWindow : public QMainWindow {
  private:
   void buildMenus();
   void buildViewMenu();
-  std::function<void()> underPointer(void (MainWindow::*work)(int, int));
   QAction* addAction(QMenu* menu, const char* name, const QString& text, const QKeySequence& key,
                      std::function<void()> work);
   void connectPanels();
@@ -79,18 +78,18 @@ class MainWindow : public QMainWindow {
   void showChoice();  ///< whenever the choice is another
   void refresh();
   void showState(const unfolding::IterationRecord& record, std::size_t count);
-  void showRegion();
   void paint();
   void paintLabels(const WindowLabels& labels);
-  void paintValues(const WindowMap& map);
+  void paintValues(const io::VertexMap& map);
   /// Values of one of the window's own maps, of the state that is shown; empty while they are
   /// computed in another thread.
-  std::optional<WindowMap> ownMap(int number);
+  std::optional<io::VertexMap> ownMap(int number);
   void fillMaps();
-  void readUnder(const QPoint& at);
+  void readUnderPointer();
   /// Name of the label at a vertex, of the labels that were opened; "" if there is none.
   [[nodiscard]] std::string valueAt(std::int32_t vertex) const;
-  [[nodiscard]] QPoint fromLowerLeft(const QPoint& at) const;
+  /// The vertex under the pointer.
+  [[nodiscard]] std::optional<std::int32_t> pick();
 
   Session& session_;
   WindowCalls calls_;
@@ -104,10 +103,9 @@ class MainWindow : public QMainWindow {
   std::vector<WindowMap> maps_;
   std::vector<WindowLabels> labels_;
   TriangleMesh shownMesh_;
-  Eigen::VectorXd shownValues_;  ///< of the map in the picture; empty for labels
-  std::string shownUnit_;
-  std::size_t shown_ = 0;  ///< state in the picture
-  std::size_t known_ = 0;  ///< states that the picture knows of
+  io::VertexMap shownMap_;  ///< in the picture; empty for labels
+  std::size_t shown_ = 0;   ///< state in the picture
+  std::size_t known_ = 0;   ///< states that the picture knows of
   Activity activity_ = Activity::Choosing;
   bool newest_ = true;    ///< the picture goes with the newest state
   bool filling_ = false;  ///< fields are being set by the program

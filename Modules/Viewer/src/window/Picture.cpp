@@ -4,6 +4,7 @@
 #include "MainWindow.h"
 
 #include "Explica/Geometry/MeshMeasures.h"
+#include "Explica/Report/ColourMap.h"
 #include "Explica/Visibility/AverageVisibility.h"
 #include "Explica/Visibility/VisibleFraction.h"
 
@@ -18,6 +19,13 @@
 
 namespace explica::viewer {
 namespace {
+
+/// As the screen has it.
+Rgb bytesOf(const report::Colour& colour) {
+  Rgb rgb;
+  for (int c = 0; c < 3; ++c) rgb[c] = report::encodeSrgb(colour[c]);
+  return rgb;
+}
 
 constexpr Rgb kOutside = {205, 198, 190};  // pale brown
 constexpr Rgb kInside = {224, 150, 84};    // orange
@@ -57,13 +65,6 @@ QString inWords(const Parting& parting) {
       .arg(parting.moveMax, 0, 'f', 2);
 }
 
-Rgb colourIn(const Scale& scale, double value) {
-  if (!std::isfinite(value)) return scale.unknown;
-  const double share = std::clamp((value - scale.low) / (scale.high - scale.low), 0.0, 1.0);
-  const double last = static_cast<double>(scale.colours.size() - 1);
-  return scale.colours[static_cast<std::size_t>(std::lround(share * last))];
-}
-
 }  // namespace
 
 void MainWindow::follow() {
@@ -86,7 +87,7 @@ void MainWindow::follow() {
   if (stale) refresh();
   if (pointerMoved_) {
     pointerMoved_ = false;
-    readUnder(pointer_);
+    readUnderPointer();
   }
 }
 
@@ -101,7 +102,7 @@ void MainWindow::refresh() {
     record = moment.record;
   }
   stage_->place(shownMesh_.positions);
-  showRegion();
+  panels_.regionSays->setText(QString::fromStdString(session_.regionWords()));
   paint();
   showState(record, count);
   stage_->render();
@@ -122,10 +123,6 @@ void MainWindow::showChoice() {
   panels_.distance->setValue(choice.view.distance);
   filling_ = false;
   stage_->showRim(session_.preview().region.faces);
-}
-
-void MainWindow::showRegion() {
-  panels_.regionSays->setText(QString::fromStdString(session_.regionWords()));
 }
 
 void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t count) {
@@ -151,17 +148,17 @@ void MainWindow::showState(const unfolding::IterationRecord& record, std::size_t
   panels_.stateSays->setText(says);
 }
 
-std::optional<WindowMap> MainWindow::ownMap(int number) {
+std::optional<io::VertexMap> MainWindow::ownMap(int number) {
+  const char* name = kOwnMapNames[number];
   if (number == kFlux) {
-    return WindowMap{"faces the viewpoint", "",
-                     visibility::vertexFlux(shownMesh_, session_.viewpoints())};
+    return io::VertexMap{name, "", visibility::vertexFlux(shownMesh_, session_.viewpoints())};
   }
   if (number == kAreaRatio) {
     TriangleMesh start = session_.surface();
     if (session_.momentCount() > 0) start.positions = session_.moment(0).positions;
-    return WindowMap{"area now / at the start", "",
-                     geometry::vertexAreas(shownMesh_)
-                         .cwiseQuotient(geometry::vertexAreas(start).cwiseMax(1e-12))};
+    return io::VertexMap{name, "",
+                         geometry::vertexAreas(shownMesh_)
+                             .cwiseQuotient(geometry::vertexAreas(start).cwiseMax(1e-12))};
   }
   // Rays take long on a large surface: another thread casts them, and the picture waits.
   const bool fresh = seenState_ == shown_ && seenValues_.size() == shownMesh_.vertexCount();
@@ -172,13 +169,13 @@ std::optional<WindowMap> MainWindow::ownMap(int number) {
     });
   }
   if (seenValues_.size() != shownMesh_.vertexCount()) return {};
-  return WindowMap{"share seen", "", seenValues_};
+  return io::VertexMap{name, "", seenValues_};
 }
 
 void MainWindow::paint() {
   const int chosen = panels_.map->currentIndex();
   const auto mapCount = static_cast<int>(maps_.size());
-  shownValues_.resize(0);
+  shownMap_ = {};
   if (chosen >= kOwnMaps + mapCount) {
     paintLabels(labels_[chosen - kOwnMaps - mapCount]);
   } else if (chosen >= kOwnMaps) {
@@ -188,27 +185,27 @@ void MainWindow::paint() {
   } else {
     std::vector<Rgb> faces(static_cast<std::size_t>(shownMesh_.faceCount()), kOutside);
     for (const std::int32_t f : session_.preview().region.faces) faces[f] = kInside;
-    stage_->paintFaces(faces);
-    stage_->showScale({}, "");
+    stage_->paint(faces);
   }
 }
 
 void MainWindow::paintLabels(const WindowLabels& labels) {
-  const std::map<std::int32_t, Rgb> colours(labels.colours.begin(), labels.colours.end());
+  std::map<Label, Rgb> colours;
+  for (const io::LabelEntry& entry : labels.table) {
+    colours[entry.key] = bytesOf(report::colourOfLabel(entry.key, entry.colour));
+  }
   std::vector<Rgb> faces;
   for (Eigen::Index f = 0; f < shownMesh_.faceCount(); ++f) {
-    const std::int32_t a = labels.keys[shownMesh_.faces(f, 0)],
-                       b = labels.keys[shownMesh_.faces(f, 1)],
-                       c = labels.keys[shownMesh_.faces(f, 2)];
+    const auto keyOf = [&](int corner) { return labels.keys[shownMesh_.faces(f, corner)]; };
+    const Label a = keyOf(0), b = keyOf(1), c = keyOf(2);
     const auto found = colours.find(b == c ? b : a);
     faces.push_back(found == colours.end() ? kOutside : found->second);
   }
-  stage_->paintFaces(faces);
-  stage_->showScale({}, "");
+  stage_->paint(faces);
 }
 
-void MainWindow::paintValues(const WindowMap& map) {
-  Scale scale = calls_.scale(map.values);
+void MainWindow::paintValues(const io::VertexMap& map) {
+  report::ColourScale scale = report::scaleFor(map.values, map.name, map.unit);
   filling_ = true;
   if (panels_.automatic->isChecked()) {
     panels_.low->setValue(scale.low);
@@ -218,12 +215,8 @@ void MainWindow::paintValues(const WindowMap& map) {
     scale.high = panels_.high->value();
   }
   filling_ = false;
-  std::vector<Rgb> colours;
-  for (const double v : map.values) colours.push_back(colourIn(scale, v));
-  stage_->paint(colours);
-  stage_->showScale(scale, map.unit.empty() ? map.name : map.name + " [" + map.unit + "]");
-  shownValues_ = map.values;
-  shownUnit_ = map.unit;
+  stage_->paint(map.values, scale);
+  shownMap_ = map;
 }
 
 std::string MainWindow::valueAt(std::int32_t vertex) const {
@@ -231,20 +224,17 @@ std::string MainWindow::valueAt(std::int32_t vertex) const {
   const int label = chosen - kOwnMaps - static_cast<int>(maps_.size());
   if (label >= 0) {
     const WindowLabels& labels = labels_[label];
-    for (const auto& [key, name] : labels.names) {
-      if (key == labels.keys[vertex]) return name;
-    }
-    return "no label";
+    const auto entry = std::ranges::find(labels.table, labels.keys[vertex], &io::LabelEntry::key);
+    return entry == labels.table.end() ? "no label" : entry->name;
   }
-  if (vertex >= shownValues_.size()) return "";
-  const double value = shownValues_[vertex];
+  if (vertex >= shownMap_.values.size()) return "";
+  const double value = shownMap_.values[vertex];
   if (!std::isfinite(value)) return "not known";
-  return QString("%1 %2").arg(value, 0, 'g', 3).arg(shownUnit_.c_str()).toStdString();
+  return QString("%1 %2").arg(value, 0, 'g', 3).arg(shownMap_.unit.c_str()).toStdString();
 }
 
-void MainWindow::readUnder(const QPoint& at) {
-  const QPoint pixel = fromLowerLeft(at);
-  const auto picked = stage_->pick(pixel.x(), pixel.y());
+void MainWindow::readUnderPointer() {
+  const auto picked = pick();
   if (!picked) return;
   const Point p = session_.surface().positions.row(*picked).transpose();
   statusBar()->showMessage(QString("%1: %2   vertex %3 at %4, %5, %6 mm on the folded surface")
@@ -256,10 +246,9 @@ void MainWindow::readUnder(const QPoint& at) {
                                .arg(p.z(), 0, 'f', 1));
 }
 
-QPoint MainWindow::fromLowerLeft(const QPoint& at) const {
+std::optional<std::int32_t> MainWindow::pick() {
   const double ratio = view_->devicePixelRatioF();
-  return {static_cast<int>(at.x() * ratio),
-          static_cast<int>((view_->height() - 1 - at.y()) * ratio)};
+  return stage_->pick(pointer_.x() * ratio, (view_->height() - 1 - pointer_.y()) * ratio);
 }
 
 bool MainWindow::eventFilter(QObject* object, QEvent* event) {

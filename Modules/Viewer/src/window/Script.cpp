@@ -33,17 +33,27 @@ void waitFor(MainWindow& window, std::size_t states) {
   window.follow();
 }
 
+/// Places about the middle of the view, a picture each.
+std::vector<QPointF> circleOf(int pictures) {
+  const QPointF middle(500, 400);
+  std::vector<QPointF> places = {middle};
+  for (int n = 1; n <= pictures; ++n) {
+    places.push_back(middle + 150 * QPointF(std::cos(0.1 * n), std::sin(0.1 * n)));
+  }
+  return places;
+}
+
 /// @return false if the words are no event
 bool playEvent(MainWindow& window, const std::string& verb, std::istringstream& words) {
   std::string name, value;
-  int x = 0, y = 0, x1 = 0, y1 = 0;
+  int x = 0, y = 0, x1 = 0, y1 = 0, pictures = 0;
   std::size_t states = 0;
   if (verb == "key" && words >> name >> x >> y) {
     window.press(QString::fromStdString(name), x, y);
   } else if (verb == "drag" && words >> x >> y >> x1 >> y1) {
-    window.drag(x, y, x1, y1);
-  } else if (verb == "turn" && words >> x) {
-    window.turn(x);
+    window.drag({QPointF(x, y), QPointF(x1, y1)});
+  } else if (verb == "turn" && words >> pictures) {
+    window.drag(circleOf(pictures));
   } else if (verb == "do" && words >> name) {
     return window.act(QString::fromStdString(name));
   } else if (verb == "set" && words >> name && std::getline(words >> std::ws, value)) {
@@ -116,32 +126,18 @@ void MainWindow::press(const QString& key, int x, int y) {
   }
 }
 
-void MainWindow::turn(int pictures) {
-  const QPointF middle(0.5 * view_->width(), 0.5 * view_->height());
-  const auto send = [this](QEvent::Type type, const QPointF& p, Qt::MouseButton button) {
-    QMouseEvent event(type, p, button, Qt::LeftButton, Qt::NoModifier);
+void MainWindow::drag(const std::vector<QPointF>& places) {
+  const auto send = [&](QEvent::Type type, const QPointF& place, Qt::MouseButton button) {
+    QMouseEvent event(type, QPointF(place.x(), view_->height() - 1 - place.y()), button,
+                      Qt::LeftButton, Qt::NoModifier);
     QApplication::sendEvent(view_, &event);
     QApplication::processEvents();
   };
-  send(QEvent::MouseButtonPress, middle, Qt::LeftButton);
-  for (int n = 1; n <= pictures; ++n) {
-    const double angle = 0.1 * n, radius = 0.2 * view_->height();
-    send(QEvent::MouseMove, middle + radius * QPointF(std::cos(angle), std::sin(angle)),
-         Qt::NoButton);
+  send(QEvent::MouseButtonPress, places.front(), Qt::LeftButton);
+  for (std::size_t n = 1; n < places.size(); ++n) {
+    send(QEvent::MouseMove, places[n], Qt::NoButton);
   }
-  send(QEvent::MouseButtonRelease, middle, Qt::LeftButton);
-}
-
-void MainWindow::drag(int x0, int y0, int x1, int y1) {
-  const auto at = [this](int x, int y) { return QPointF(x, view_->height() - 1 - y); };
-  const auto send = [this](QEvent::Type type, const QPointF& p, Qt::MouseButton button,
-                           Qt::MouseButtons held) {
-    QMouseEvent event(type, p, button, held, Qt::NoModifier);
-    QApplication::sendEvent(view_, &event);
-  };
-  send(QEvent::MouseButtonPress, at(x0, y0), Qt::LeftButton, Qt::LeftButton);
-  send(QEvent::MouseMove, at(x1, y1), Qt::NoButton, Qt::LeftButton);
-  send(QEvent::MouseButtonRelease, at(x1, y1), Qt::LeftButton, Qt::NoButton);
+  send(QEvent::MouseButtonRelease, places.back(), Qt::LeftButton);
 }
 
 }  // namespace explica::viewer

@@ -11,6 +11,7 @@
 #include <vtkCellData.h>
 #include <vtkCellPicker.h>
 #include <vtkDoubleArray.h>
+#include <vtkFeatureEdges.h>
 #include <vtkLookupTable.h>
 #include <vtkOrientationMarkerWidget.h>
 #include <vtkPointData.h>
@@ -30,7 +31,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 namespace explica::viewer {
@@ -39,14 +39,6 @@ namespace {
 constexpr Eigen::Index kManyFaces = 60000;  // above it, turning shows a coarser surface
 constexpr int kCoarseCells = 55;            // of it, along each axis of the surface's box
 constexpr int kSamples = 4;                 // of a pixel against jagged edges, while nothing turns
-
-void fill(vtkUnsignedCharArray& array, const std::vector<Rgb>& colours) {
-  array.SetNumberOfTuples(static_cast<vtkIdType>(colours.size()));
-  for (std::size_t n = 0; n < colours.size(); ++n) {
-    array.SetTypedTuple(static_cast<vtkIdType>(n), colours[n].data());
-  }
-  array.Modified();
-}
 
 /// Round numbers from low to high, 1, 2 or 5 times a power of ten apart, three to seven of them.
 std::vector<double> roundValues(double low, double high) {
@@ -63,21 +55,13 @@ std::vector<double> roundValues(double low, double high) {
   return values;
 }
 
-/// Ends of the edges that one of the faces has and no other of them, two by two.
-std::vector<std::int32_t> rimOf(const Faces& faces, const std::vector<std::int32_t>& chosen) {
-  std::map<std::pair<std::int32_t, std::int32_t>, int> count;
+vtkNew<vtkCellArray> cellsOf(const Faces& faces, const std::vector<std::int32_t>& chosen) {
+  vtkNew<vtkCellArray> cells;
   for (const std::int32_t f : chosen) {
-    for (int k = 0; k < 3; ++k) {
-      ++count[std::minmax(faces(f, k), faces(f, (k + 1) % 3))];
-    }
+    const vtkIdType corners[3] = {faces(f, 0), faces(f, 1), faces(f, 2)};
+    cells->InsertNextCell(3, corners);
   }
-  std::vector<std::int32_t> ends;
-  for (const auto& [edge, times] : count) {
-    if (times != 1) continue;
-    ends.push_back(edge.first);
-    ends.push_back(edge.second);
-  }
-  return ends;
+  return cells;
 }
 
 }  // namespace
@@ -91,12 +75,11 @@ Stage::Stage(const TriangleMesh& surface) : surface_(surface), positions_(surfac
   bar_->SetWidth(0.06);
   bar_->SetHeight(0.4);
   bar_->SetBarRatio(0.3);
-  bar_->SetVisibility(0);
   bar_->SetUnconstrainedFontSize(true);
   barTitle_->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
   barTitle_->SetPosition(0.985, 0.73);
   barTitle_->GetTextProperty()->SetJustificationToRight();
-  barTitle_->SetVisibility(0);
+  showBar(false);
   for (vtkTextProperty* text : {bar_->GetLabelTextProperty(), barTitle_->GetTextProperty()}) {
     text->SetColor(0.1, 0.1, 0.1);
     text->SetFontSize(15);
@@ -113,22 +96,17 @@ Stage::~Stage() = default;
 void Stage::buildSurface() {
   points_->SetDataTypeToFloat();
   points_->SetNumberOfPoints(surface_.vertexCount());
-  vtkNew<vtkCellArray> cells;
-  for (Eigen::Index f = 0; f < surface_.faceCount(); ++f) {
-    const vtkIdType corners[3] = {surface_.faces(f, 0), surface_.faces(f, 1), surface_.faces(f, 2)};
-    cells->InsertNextCell(3, corners);
-  }
   mesh_->SetPoints(points_);
-  mesh_->SetPolys(cells);
-  for (vtkUnsignedCharArray* array : {colours_.Get(), faceColours_.Get()}) {
-    array->SetNumberOfComponents(3);
-  }
-  fill(*colours_, std::vector<Rgb>(static_cast<std::size_t>(surface_.vertexCount()), Rgb{}));
-  mesh_->GetPointData()->SetScalars(colours_);
+  mesh_->SetPolys(cellsOf(surface_.faces, surface_.allFaces()));
+  faceColours_->SetNumberOfComponents(3);
   normals_->SetInputData(mesh_);
   normals_->SplittingOff();
   normals_->ConsistencyOff();
   mapper_->SetInputConnection(normals_->GetOutputPort());
+  for (vtkPolyDataMapper* mapper : {mapper_.Get(), coarseMapper_.Get()}) {
+    mapper->SetLookupTable(barColours_);
+    mapper->UseLookupTableScalarRangeOn();
+  }
   actor_->SetMapper(mapper_);
   actor_->GetProperty()->SetSpecular(0.1);
   actor_->GetProperty()->SetAmbient(0.15);
@@ -141,8 +119,14 @@ void Stage::buildSurface() {
 }
 
 void Stage::buildRim() {
+  region_->SetPoints(points_);
+  vtkNew<vtkFeatureEdges> rim;
+  rim->SetInputData(region_);
+  rim->FeatureEdgesOff();
+  rim->NonManifoldEdgesOff();
+  rim->ColoringOff();
   vtkNew<vtkPolyDataMapper> mapper;
-  mapper->SetInputData(rimLines_);
+  mapper->SetInputConnection(rim->GetOutputPort());
   mapper->SetResolveCoincidentTopologyToPolygonOffset();
   mapper->SetRelativeCoincidentTopologyLineOffsetParameters(0, -8);
   vtkNew<vtkActor> actor;
@@ -214,62 +198,56 @@ void Stage::place(const Positions& positions) {
     points_->SetPoint(v, positions(v, 0), positions(v, 1), positions(v, 2));
   }
   points_->Modified();
-  placeRim();
 }
 
 void Stage::paint(const std::vector<Rgb>& colours) {
-  mesh_->GetCellData()->SetScalars(nullptr);
-  fill(*colours_, colours);
-  mesh_->GetPointData()->SetScalars(colours_);
-  mapper_->SetScalarModeToUsePointData();
-}
-
-void Stage::paintFaces(const std::vector<Rgb>& colours) {
   mesh_->GetPointData()->SetScalars(nullptr);
-  fill(*faceColours_, colours);
+  faceColours_->SetNumberOfTuples(colours.size());
+  std::copy(colours.front().data(), colours.back().data() + 3, faceColours_->GetPointer(0));
+  faceColours_->Modified();
   mesh_->GetCellData()->SetScalars(faceColours_);
   mapper_->SetScalarModeToUseCellData();
+  showBar(false);
 }
 
-void Stage::showScale(const std::optional<Scale>& scale, const std::string& title) {
-  bar_->SetVisibility(scale.has_value());
-  barTitle_->SetVisibility(scale.has_value());
-  if (!scale) return;
-  barColours_->SetNumberOfTableValues(static_cast<vtkIdType>(scale->colours.size()));
-  for (std::size_t n = 0; n < scale->colours.size(); ++n) {
-    const Rgb& c = scale->colours[n];
-    barColours_->SetTableValue(static_cast<vtkIdType>(n), c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+void Stage::showBar(bool shown) {
+  bar_->SetVisibility(shown);
+  barTitle_->SetVisibility(shown);
+}
+
+void Stage::paint(const Eigen::VectorXd& values, const report::ColourScale& scale) {
+  mesh_->GetCellData()->SetScalars(nullptr);
+  values_->SetNumberOfValues(values.size());
+  std::copy(values.begin(), values.end(), values_->GetPointer(0));
+  values_->Modified();
+  mesh_->GetPointData()->SetScalars(values_);
+  mapper_->SetScalarModeToUsePointData();
+  const auto onScreen = [](const report::Colour& c, int k) {
+    return report::encodeSrgb(c[k]) / 255.0;
+  };
+  constexpr int kColours = 256;
+  barColours_->SetNumberOfTableValues(kColours);
+  for (int n = 0; n < kColours; ++n) {
+    const report::Colour c = report::colourAt(scale.map, n / (kColours - 1.0));
+    barColours_->SetTableValue(n, onScreen(c, 0), onScreen(c, 1), onScreen(c, 2));
   }
-  barColours_->SetRange(scale->low, scale->high);
+  const report::Colour unknown = report::colourAt(scale.map, kNaN);
+  barColours_->SetNanColor(onScreen(unknown, 0), onScreen(unknown, 1), onScreen(unknown, 2), 1);
+  barColours_->SetRange(scale.low, scale.high);
   vtkNew<vtkDoubleArray> ticks;
-  for (const double value : roundValues(scale->low, scale->high)) ticks->InsertNextValue(value);
+  for (const double value : roundValues(scale.low, scale.high)) ticks->InsertNextValue(value);
   bar_->SetUseCustomLabels(true);
   bar_->SetCustomLabels(ticks);
-  barTitle_->SetInput(title.c_str());
-  const double largest = std::max(std::abs(scale->low), std::abs(scale->high));
-  const double shares = std::max(1.0, largest / std::max(1e-300, scale->high - scale->low));
+  showBar(true);
+  barTitle_->SetInput((scale.title + (scale.unit.empty() ? "" : " [" + scale.unit + "]")).c_str());
+  const double largest = std::max(std::abs(scale.low), std::abs(scale.high));
+  const double shares = std::max(1.0, largest / std::max(1e-300, scale.high - scale.low));
   const int digits = std::min(9, 3 + static_cast<int>(std::log10(shares)));
   bar_->SetLabelFormat(("%-." + std::to_string(digits) + "g").c_str());
 }
 
 void Stage::showRim(const std::vector<std::int32_t>& regionFaces) {
-  rim_ = rimOf(surface_.faces, regionFaces);
-  placeRim();
-}
-
-void Stage::placeRim() {
-  vtkNew<vtkPoints> points;
-  vtkNew<vtkCellArray> cells;
-  for (std::size_t n = 0; n + 1 < rim_.size(); n += 2) {
-    vtkIdType ends[2];
-    for (int k = 0; k < 2; ++k) {
-      const auto p = positions_.row(rim_[n + k]);
-      ends[k] = points->InsertNextPoint(p.x(), p.y(), p.z());
-    }
-    cells->InsertNextCell(2, ends);
-  }
-  rimLines_->SetPoints(points);
-  rimLines_->SetLines(cells);
+  region_->SetPolys(cellsOf(surface_.faces, regionFaces));
 }
 
 void Stage::look(const Vector& direction) {
@@ -296,22 +274,10 @@ Vector Stage::direction() const {
   return -Vector(towards[0], towards[1], towards[2]);
 }
 
-std::optional<std::int32_t> Stage::pick(int x, int y) {
-  if (picker_->Pick(x, y, 0, renderer_) == 0) return {};
-  const Point place(picker_->GetPickPosition());
-  const vtkIdType face = picker_->GetCellId();
-  if (face < 0 || face >= surface_.faceCount()) return {};
-  std::int32_t picked = -1;
-  double nearest = kInfinity;
-  for (int k = 0; k < 3; ++k) {
-    const std::int32_t v = surface_.faces(face, k);
-    const double distance = (positions_.row(v).transpose() - place).norm();
-    if (distance < nearest) {
-      nearest = distance;
-      picked = v;
-    }
-  }
-  return picked;
+std::optional<std::int32_t> Stage::pick(double x, double y) {
+  if (picker_->Pick(std::floor(x), std::floor(y), 0, renderer_) == 0) return {};
+  const auto vertex = static_cast<std::int32_t>(picker_->GetPointId());
+  return vertex < 0 ? std::nullopt : std::optional(vertex);
 }
 
 }  // namespace explica::viewer

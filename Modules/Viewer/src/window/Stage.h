@@ -3,11 +3,13 @@
 #pragma once
 
 #include "Explica/Core/TriangleMesh.h"
+#include "Explica/Report/ColourMap.h"
 #include "Explica/Viewer/Window.h"
 
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@
 class vtkActor;
 class vtkAnnotatedCubeActor;
 class vtkCellPicker;
+class vtkDoubleArray;
 class vtkLookupTable;
 class vtkOrientationMarkerWidget;
 class vtkPoints;
@@ -30,6 +33,8 @@ class vtkUnsignedCharArray;
 
 namespace explica::viewer {
 
+using Rgb = std::array<unsigned char, 3>;
+
 /// The three-dimensional picture: surface, colours, the region's rim, colour bar, cube of
 /// directions.  Knows no window but the one that it is put into.
 class Stage {
@@ -42,11 +47,10 @@ class Stage {
   void render();
 
   void place(const Positions& positions);
-  void paint(const std::vector<Rgb>& colours);
+  /// Values of the vertices, with the scale's bar beside the surface.
+  void paint(const Eigen::VectorXd& values, const report::ColourScale& scale);
   /// Colours by face: for regions and labels, between whose colours nothing lies.
-  void paintFaces(const std::vector<Rgb>& colours);
-  /// Shows the bar; none where there is no scale.
-  void showScale(const std::optional<Scale>& scale, const std::string& title);
+  void paint(const std::vector<Rgb>& colours);
   /// Draws the edges of the region's faces that no other face of it has.
   void showRim(const std::vector<std::int32_t>& regionFaces);
 
@@ -56,28 +60,26 @@ class Stage {
   [[nodiscard]] Vector direction() const;
   /// The vertex of the surface under the pointer.
   /// @param x,y  pixels of the window from the lower left
-  [[nodiscard]] std::optional<std::int32_t> pick(int x, int y);
+  [[nodiscard]] std::optional<std::int32_t> pick(double x, double y);
 
  private:
   void buildSurface();
   void buildRim();
-  void placeRim();
+  void showBar(bool shown);
   void coarsenWhileTurning(vtkRenderWindowInteractor& interactor);
-  void show(vtkPolyData& mesh);
 
   const TriangleMesh& surface_;
   Positions positions_;
-  std::vector<std::int32_t> rim_;  ///< ends of its edges, two by two
   vtkNew<vtkRenderer> renderer_;
   vtkNew<vtkPoints> points_;
   vtkNew<vtkPolyData> mesh_;
-  vtkNew<vtkUnsignedCharArray> colours_;
+  vtkNew<vtkDoubleArray> values_;
   vtkNew<vtkUnsignedCharArray> faceColours_;
   vtkNew<vtkPolyDataNormals> normals_;
   vtkNew<vtkPolyDataMapper> mapper_;
   vtkNew<vtkPolyDataMapper> coarseMapper_;
   vtkNew<vtkActor> actor_;
-  vtkNew<vtkPolyData> rimLines_;
+  vtkNew<vtkPolyData> region_;  ///< its faces on the surface's points
   vtkNew<vtkScalarBarActor> bar_;
   vtkNew<vtkTextActor> barTitle_;
   vtkNew<vtkLookupTable> barColours_;

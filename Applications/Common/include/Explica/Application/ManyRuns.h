@@ -27,6 +27,14 @@ namespace explica::app {
 void sayProblem(Context& context, const std::string& name, const std::filesystem::path& folder,
                 const std::string& why);
 
+/// How work on many people ended: warns of those that failed.
+/// @param data  names the whole, for messages; `what` is counted, such as "hearts"
+/// @param worst  of those that did not fail
+/// @throws InvalidInput  all failed
+[[nodiscard]] Termination endOfRuns(Context& context, const std::string& data, const char* what,
+                                    std::size_t all, const std::vector<std::string>& failed,
+                                    Termination worst);
+
 /// Takes back what the steps of an `explica run` below the output folder have left.
 void dropSteps(Context& context, const std::string& run);
 

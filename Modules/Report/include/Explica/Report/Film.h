@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "Explica/Report/SurfacePicture.h"
+#include "Explica/Report/Figure.h"
 
 #include <string>
 #include <vector>
@@ -16,10 +16,8 @@ struct FilmFrame {
 };
 
 struct FilmLook {
-  Vector towards = Vector(1, 0, 0);  ///< direction of sight, any length > 0
-  Vector up = Vector(0, 0, 1);
-  std::vector<std::int32_t> focus;  ///< vertices that the picture holds in all frames; empty: all
-  std::vector<Colour> colours;      ///< one a vertex; empty for a plain light grey
+  FigureView view;              ///< its focus is what the picture holds in all frames
+  std::vector<Colour> colours;  ///< one a vertex; empty for a plain light grey
   Filling filling = Filling::Smooth;
   std::vector<std::int32_t> keys = {};  ///< one a vertex, 0 off the region; or none
 };

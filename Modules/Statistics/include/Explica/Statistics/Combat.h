@@ -8,6 +8,11 @@
 
 namespace explica::statistics {
 
+/// A column for each site, of 0 and 1, and the covariates.
+/// @param sites  N, from 0
+[[nodiscard]] Eigen::MatrixXd withSites(const std::vector<int>& sites,
+                                        const Eigen::MatrixXd& covariates);
+
 /// What harmonisation did to the sites.
 struct CombatResult {
   Eigen::MatrixXd shift;  ///< S x V, in units of `spread`, taken off each site's people

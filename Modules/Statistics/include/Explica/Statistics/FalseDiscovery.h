@@ -11,10 +11,4 @@ namespace explica::statistics {
 /// @param p       V, NaN where nothing was tested, which counts for nothing and stays NaN
 [[nodiscard]] Eigen::VectorXd falseDiscoveryRate(const Eigen::VectorXd& p);
 
-/// As above, with each place counted by a weight, such as its resels [Worsley2009]: j and m become
-/// sums of weights.
-/// @param weights  V, >= 0
-[[nodiscard]] Eigen::VectorXd falseDiscoveryRate(const Eigen::VectorXd& p,
-                                                 const Eigen::VectorXd& weights);
-
 }  // namespace explica::statistics

@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 
-#include <cstdint>
 #include <vector>
 
 namespace explica::statistics {
@@ -25,24 +24,20 @@ struct PlaceSurface {
 [[nodiscard]] PlaceSurface placeSurface(const TriangleMesh& mesh);
 
 struct InferenceOptions {
-  double clusterP = 0.001;        ///< two-sided P of the threshold that forms clusters
-  std::int64_t permutations = 0;  ///< 0: none
-  std::uint64_t seed = 1;
-  bool tfce = false;
-  Exchange exchange = Exchange::Auto;
-  std::vector<int> blocks;  ///< N, or empty: who is exchanged with whom
+  double clusterP = 0.001;          ///< two-sided P of the threshold that forms clusters
+  PermutationOptions permutations;  ///< but for their threshold
 };
 
 /// A cluster with all that was inferred of it; NaN where nothing was.
 struct FoundCluster {
   Cluster cluster;
-  bool negative = false;   ///< of t below the threshold's negative
-  double statistic = 0;    ///< at the peak, with its sign
-  double fieldPeak = 0;    ///< family-wise P by random field theory, of the peak
-  double fieldExtent = 0;  ///< and of the extent in resels
-  double peak = 0;         ///< family-wise P by permutation, of the peak
-  double extent = 0;
-  double mass = 0;
+  bool negative = false;      ///< of t below the threshold's negative
+  double statistic = 0;       ///< at the peak, with its sign
+  double fieldPeak = kNaN;    ///< family-wise P by random field theory, of the peak
+  double fieldExtent = kNaN;  ///< and of the extent in resels
+  double peak = kNaN;         ///< family-wise P by permutation, of the peak
+  double extent = kNaN;
+  double mass = kNaN;
 };
 
 /// What of one contrast is real, at V places; P is two-sided for t.
@@ -56,7 +51,6 @@ struct Inference {
   std::vector<FoundCluster> clusters;  ///< largest first
   std::int64_t shuffles = 0;           ///< made, with the data as they are
   Exchange exchange = Exchange::Auto;
-  bool exhaustive = false;
   bool interrupted = false;
 };
 
@@ -68,11 +62,11 @@ struct Smoothness {
 [[nodiscard]] Smoothness smoothnessOf(const PlaceSurface& surface,
                                       const Eigen::VectorXd& roughness);
 
-/// @param values      N x V; may be null without permutations
+/// @param values      N x V; empty: no permutations
 /// @param surface     null: places without neighbours
 /// @param smoothness  null: no random field theory
 [[nodiscard]] Inference infer(const Design& design, const Contrast& contrast,
-                              const ContrastMaps& maps, const Eigen::MatrixXd* values,
+                              const ContrastMaps& maps, const Eigen::MatrixXd& values,
                               const PlaceSurface* surface, const Smoothness* smoothness,
                               const InferenceOptions& options, const Monitor& monitor = {});
 

@@ -21,13 +21,12 @@ struct PlaceGraph {
 };
 
 struct PermutationOptions {
-  std::int64_t count = 10000;  ///< beside the data as they are
+  std::int64_t count = 10000;  ///< beside the data as they are; 0: none are made
   std::uint64_t seed = 1;
   Exchange exchange = Exchange::Auto;
   std::vector<int> blocks;      ///< N, or empty
   double clusterThreshold = 0;  ///< of |t| or F, > 0; clusters are found if there is a graph
-  bool tfce = false;
-  TfceOptions tfceOptions;
+  bool tfce = false;            ///< if there is a graph
 };
 
 /// Maxima over all places of each shuffle, the data as they are first, and the maps of those.

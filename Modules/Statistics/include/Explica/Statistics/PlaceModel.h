@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <memory>
 #include <vector>
 
 namespace explica::statistics {
@@ -39,19 +38,11 @@ struct ModelMaps {
 /// have full rank.  Degrees of freedom: n - p; with a random intercept those within groups, n - g -
 /// (columns that vary within groups), or between, g - (the other columns), if the contrast has
 /// weights on columns of the latter kind only [PinheiroBates2000, 2.4.2].
-class PlaceModel {
- public:
-  PlaceModel(const Design& design, std::vector<Contrast> contrasts);
-  ~PlaceModel();
-
-  /// @param values  N x B, a column a place
-  /// @param first   place of the first column in `maps`
-  void fit(const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps) const;
-
- private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
-};
+///
+/// @param values  N x B, a column a place
+/// @param first   place of the first column in `maps`
+void fitPlaces(const Design& design, const std::vector<Contrast>& contrasts,
+               const Eigen::MatrixXd& values, Eigen::Index first, ModelMaps& maps);
 
 /// Effect over the residuals' standard deviation: Cohen's d of a difference of two groups.
 [[nodiscard]] Eigen::VectorXd standardisedEffect(const ContrastMaps& maps,

@@ -61,8 +61,7 @@ class ClusterSizes {
  public:
   /// @param threshold  that forms the clusters
   /// @param roughnessDf  degrees of freedom of the roughness; infinite: it is known
-  ClusterSizes(double threshold, const FieldKind& kind, double resels, double roughnessDf,
-               int dimension = 2);
+  ClusterSizes(double threshold, const FieldKind& kind, double resels, double roughnessDf);
 
   /// P that one cluster is larger than this many resels.
   [[nodiscard]] double single(double resels) const;
@@ -73,10 +72,10 @@ class ClusterSizes {
 
  private:
   double expected_ = 0;
-  double scale_ = 0;     // resels of a cluster whose logarithm is 0 in the table
-  double exponent_ = 0;  // > 0: the closed form of a Gaussian field
+  double scale_ = 0;  // resels of a cluster whose logarithm is 0 in the table
   double first_ = 0, step_ = 0;
-  std::vector<double> tail_;  // P that the logarithm of the size exceeds first_ + i step_
+  std::vector<double> tail_;  // P that the logarithm of the size exceeds first_ + i step_; empty of
+                              // a Gaussian field, which has a closed form
 };
 
 }  // namespace explica::statistics

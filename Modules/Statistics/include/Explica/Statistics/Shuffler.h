@@ -54,8 +54,6 @@ class Shuffler {
   using Unit = std::vector<std::int32_t>;  // people who move together
   using Set = std::vector<Unit>;           // units that may take each other's place
 
-  void groupWithin(const std::vector<std::vector<std::int32_t>>& blocks);
-  void groupWhole(const std::vector<std::vector<std::int32_t>>& blocks);
   [[nodiscard]] double possible() const;
 
   Eigen::Index people_;

@@ -11,15 +11,10 @@
 
 namespace explica::statistics {
 
-/// Powers of threshold-free cluster enhancement.
-struct TfceOptions {
-  double extent = 1;  ///< E, of the cluster's area; 1 on surfaces [SmithNichols2009]
-  double height = 2;  ///< H, of the threshold
-};
-
 /// Threshold-free cluster enhancement of a map on a surface [SmithNichols2009, Eq. 1]:
 /// T(v) = integral over h from 0 to |s(v)| of e(v, h)^E h^H dh, with e(v, h) the area of the
-/// cluster of v at the threshold h; negative values likewise, with a negative T.
+/// cluster of v at the threshold h, E = 1 as on surfaces and H = 2; negative values likewise, with
+/// a negative T.
 ///
 /// The integral is exact: between two neighbouring values of the map no cluster changes, so that
 /// each piece has a closed form.  Clusters are followed by union and find from the highest vertex
@@ -28,8 +23,7 @@ struct TfceOptions {
 class Tfce {
  public:
   /// Both are kept by reference.
-  Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& areas,
-       const TfceOptions& options = {});
+  Tfce(const geometry::IndexLists& neighbours, const std::vector<float>& areas);
 
   /// @param values    V; NaN is outside
   /// @param enhanced  V, set
@@ -44,7 +38,6 @@ class Tfce {
 
   const geometry::IndexLists& neighbours_;
   const std::vector<float>& areas_;
-  TfceOptions options_;
   std::vector<std::pair<float, std::int32_t>> order_;
   std::vector<std::int32_t> parent_;  // -1: not above the threshold yet
   std::vector<double> gathered_;      // of a root: T so far; of others: T less the parent's

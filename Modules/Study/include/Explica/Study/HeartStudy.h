@@ -3,6 +3,7 @@
 #pragma once
 
 #include "Explica/Core/Text.h"
+#include "Explica/Study/StudyTable.h"
 
 #include <filesystem>
 #include <map>
@@ -36,19 +37,10 @@ struct HeartLayout {
                                                    const std::vector<std::string>& wanted = {},
                                                    const HeartLayout& layout = {});
 
-/// A person's row: what participants.tsv says, how the run went, and the heart's numbers.
-struct HeartRow {
-  std::string name;
-  std::string state;                         ///< "done", "failed: ...", "implausible: ..."
-  std::map<std::string, std::string> about;  ///< of participants.tsv: "sex", "age"
-  std::map<std::string, std::string> values;
-  bool pictured = false;  ///< a bull's-eye lies in its folder
-  std::filesystem::path folder;
-};
-
-/// One row a person, whatever became of the run in `out`/`folder`/heart.
+/// One row a person, whatever became of the run in `out`/`folder`/heart: what participants.tsv
+/// says, how the run went, the heart's numbers and its bull's-eye, if there is one, as its picture.
 /// @param about  rows of participants.tsv by participant_id
-[[nodiscard]] std::vector<HeartRow> heartRows(const std::filesystem::path& out,
+[[nodiscard]] std::vector<StudyRow> heartRows(const std::filesystem::path& out,
                                               const std::vector<HeartSubject>& subjects,
                                               const std::map<std::string, TableRow>& about = {});
 
@@ -58,12 +50,12 @@ struct HeartRow {
     const std::filesystem::path& dataset);
 
 /// Tab-separated, "n/a" where a row has no value; columns in a fixed order, segments last.
-[[nodiscard]] std::string heartTable(const std::vector<HeartRow>& rows);
+[[nodiscard]] std::string heartTable(const std::vector<StudyRow>& rows);
 
 /// What each column of heartTable() means, with its unit, as BIDS wants it beside a table.
-[[nodiscard]] std::string heartColumns(const std::vector<HeartRow>& rows);
+[[nodiscard]] std::string heartColumns(const std::vector<StudyRow>& rows);
 
 /// A page of the table with each person's bull's-eye; no request but for these pictures.
-[[nodiscard]] std::string heartPage(const std::vector<HeartRow>& rows, const std::string& title);
+[[nodiscard]] std::string heartPage(const std::vector<StudyRow>& rows, const std::string& title);
 
 }  // namespace explica::study

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/Provenance/Json.h"
+
 #include <filesystem>
 #include <map>
 #include <string>
@@ -33,6 +35,16 @@ struct StudyRow {
                                               ///< "region.precuneus": mean thickness, mm
   std::vector<RegionNumber> regions;
 };
+
+/// The value of a column; "n/a" where the row has none.
+[[nodiscard]] std::string valueIn(const StudyRow& row, const std::string& column);
+
+/// What became of a run whose folder holds a problem.txt: "interrupted", or "failed: " and why;
+/// empty without one.
+[[nodiscard]] std::string problemIn(const std::filesystem::path& run);
+
+/// A run's folder as it is, in the form of kKeptName without name and key; or what was kept of it.
+[[nodiscard]] provenance::Json accountOf(const std::filesystem::path& run);
 
 /// Something in a row that a person should look at.
 struct StudyFlag {
@@ -82,6 +94,8 @@ struct KnownColumn {
 /// @return null for all others
 [[nodiscard]] const KnownColumn* knownColumn(const std::string& name);
 
+/// Columns of participants.tsv that any row has, by name.
+[[nodiscard]] std::vector<std::string> aboutColumns(const std::vector<StudyRow>& rows);
 /// Columns of all rows: those that come first, others by name, regions last.
 [[nodiscard]] std::vector<std::string> columnsOf(const std::vector<StudyRow>& rows);
 [[nodiscard]] bool isRegion(const std::string& column);

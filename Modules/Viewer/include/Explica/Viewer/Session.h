@@ -7,9 +7,12 @@
 #include "Explica/Unfolding/Unfold.h"
 #include "Explica/Visibility/Viewpoints.h"
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -77,17 +80,17 @@ class Session {
  public:
   /// @throws InvalidInput  not a manifold surface
   explicit Session(TriangleMesh surface);
-  ~Session();
+  ~Session() { join(); }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  [[nodiscard]] const TriangleMesh& surface() const;
-  [[nodiscard]] Choice choice() const;
+  [[nodiscard]] const TriangleMesh& surface() const { return surface_; }
+  [[nodiscard]] const Choice& choice() const { return choice_; }
 
   /// Changes the choice; drops the states of an earlier unfolding.  While it runs, nothing changes.
   /// @return what the choice selects; also available as preview()
   const Preview& choose(const Choice& choice);
-  [[nodiscard]] const Preview& preview() const;
+  [[nodiscard]] const Preview& preview() const { return preview_; }
   /// "812 faces, average visibility 0.412", of an empty region nothing, and the problem.
   [[nodiscard]] std::string regionWords() const;
 
@@ -106,11 +109,11 @@ class Session {
   void pause();
   /// Back to choosing; keeps the choice.
   void reset();
-  [[nodiscard]] Activity activity() const;
+  [[nodiscard]] Activity activity() const { return guarded(activity_); }
   /// What was parted before the first state; none before it, and of an unfolding that was opened.
-  [[nodiscard]] std::optional<Parting> parting() const;
+  [[nodiscard]] std::optional<Parting> parting() const { return guarded(parting_); }
   /// Why it is over: as `explica unfold` would say with the same options; NotRun before.
-  [[nodiscard]] Termination termination() const;
+  [[nodiscard]] Termination termination() const { return guarded(termination_); }
 
   /// Shows an unfolding that was done before; it cannot go on.
   /// @throws InvalidInput  no state, or states of another surface
@@ -119,7 +122,6 @@ class Session {
   /// States so far; at least the start once it ran.
   [[nodiscard]] std::size_t momentCount() const;
   [[nodiscard]] Moment moment(std::size_t number) const;
-  [[nodiscard]] unfolding::IterationRecord record(std::size_t number) const;
 
   /// What `explica unfold --resume` needs to write the state of `number` without computing it
   /// again; none for an unfolding that was opened.
@@ -130,8 +132,47 @@ class Session {
       std::size_t number) const;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> self_;
+  /// A state, kept as what differs from the start: a region moves, the rest of a hemisphere does
+  /// not.
+  struct Kept {
+    std::vector<std::int32_t> vertices;
+    Positions positions;
+    unfolding::IterationRecord record;
+    unfolding::UnfoldState state;  ///< without its positions
+  };
+
+  /// A value that the iterations' thread may be changing.
+  template <class Value>
+  Value guarded(const Value& value) const {
+    const std::lock_guard<std::mutex> hold(mutex_);
+    return value;
+  }
+  void keep(unfolding::UnfoldState state, const unfolding::IterationRecord& record);
+  [[nodiscard]] Positions positionsOf(const Kept& kept) const;
+  [[nodiscard]] std::vector<unfolding::IterationRecord> history(std::size_t last) const;
+  bool begin();
+  void work();
+  void iterate();
+  void join();
+
+  const TriangleMesh surface_;
+  Choice choice_;
+  Preview preview_;
+
+  // Shared between the window's thread and the iterations', under the mutex.
+  mutable std::mutex mutex_;
+  std::vector<Kept> moments_;
+  Activity activity_ = Activity::Choosing;
+  Termination termination_ = Termination::NotRun;
+  std::string fault_;                                 ///< why it could not begin
+  std::optional<Parting> parting_;                    ///< once it began
+  bool opened_ = false;                               ///< the states are those of an earlier run
+  std::optional<visibility::Viewpoints> openedView_;  ///< of that run
+
+  std::unique_ptr<unfolding::Unfolder> unfolder_;  ///< touched by the iterations' thread only while
+                                                   ///< it runs
+  std::thread worker_;
+  std::atomic<bool> pauseWanted_{false};
 };
 
 }  // namespace explica::viewer

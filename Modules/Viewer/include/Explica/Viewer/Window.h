@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "Explica/IO/VertexDataFile.h"
 #include "Explica/Viewer/Session.h"
 
-#include <array>
 #include <functional>
 #include <future>
 #include <optional>
@@ -14,35 +14,16 @@
 
 namespace explica::viewer {
 
-using Rgb = std::array<unsigned char, 3>;
-
 /// Values on the surface's vertices that the window can show beside its own maps (region, flux,
-/// seen share, area ratio).
-struct WindowMap {
-  std::string name;
-  std::string unit;        ///< may be empty
-  Eigen::VectorXd values;  ///< V; not-a-number where not known
-  std::string file = {};   ///< for `explica unfold --map`: the file whose first map this is
+/// seen share, area ratio); not-a-number where not known.
+struct WindowMap : io::VertexMap {
+  std::string file = {};  ///< for `explica unfold --map`: the file whose first map this is
 };
 
 /// Labels on the surface's vertices.
-struct WindowLabels {
-  std::string name;
-  std::string file;                                         ///< for `explica unfold --label`
-  std::vector<std::int32_t> keys;                           ///< V
-  std::vector<std::pair<std::int32_t, std::string>> names;  ///< of the keys
-  std::vector<std::pair<std::int32_t, Rgb>> colours;        ///< of the keys
+struct WindowLabels : io::LabelMap {
+  std::string file = {};  ///< for `explica unfold --label`
 };
-
-/// A map's colours, lowest value first.
-struct Scale {
-  double low = 0;
-  double high = 1;
-  std::vector<Rgb> colours;  ///< at least two
-  Rgb unknown = {150, 150, 150};
-};
-/// The scale that suits a map's values.
-using MakeScale = std::function<Scale(const Eigen::VectorXd& values)>;
 
 /// What a file holds that the user opens.
 struct Opened {
@@ -59,7 +40,6 @@ using Save = std::function<std::future<std::string>(const Session& session, std:
 
 /// What the window asks for from outside, since it reads and writes nothing itself.
 struct WindowCalls {
-  MakeScale scale;
   OpenFile open;
   Save save;
 };
