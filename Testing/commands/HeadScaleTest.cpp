@@ -199,6 +199,10 @@ Source upperHalf(const Grid& grid, const Subscripts& at) {
   return grid.toWorld(Vector(at[0], at[1], at[2])).z() > 18 ? Source(at) : std::nullopt;
 }
 
+Source flipped(const Grid& grid, const Subscripts& at) {
+  return Subscripts{grid.size[0] - 1 - at[0], at[1], at[2]};
+}
+
 Source upsideDown(const Grid& grid, const Subscripts& at) {
   return Subscripts{at[0], at[1], grid.size[2] - 1 - at[2]};
 }
@@ -265,7 +269,7 @@ TEST_F(WholeHead, AProtonDensityImageIsRefusedByItsFluid) {
   EXPECT_FALSE(fs::exists(folder_ / "segment")) << run;
 }
 
-/// A study of the template's brain and its left half, once for all tests.
+/// A study of the template's brain, its left half and its mirror image, once for all tests.
 class CoarseHeads : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -273,6 +277,8 @@ class CoarseHeads : public ::testing::Test {
     folder_ = new TemporaryFolder;
     writeCoarse(image("half"), leftHalf);
     writeCoarse(image("whole"), asItIs);
+    // Nothing tells a flip, and nothing tries to: it is done like the others.
+    writeCoarse(image("flipped"), flipped);
     writeText(*folder_ / "data/dataset_description.json",
               R"({"Name": "a", "BIDSVersion": "1.8.0"})");
     study_ = new CommandResult(patiently(study("out") + kSmall));
@@ -367,7 +373,10 @@ TEST_F(CoarseHeads, HalfABrainIsFlaggedByARunAndFailsItsRowOfAStudyAlone) {
   ASSERT_EQ(explica({"bids", *folder_ / "data", *folder_ / "out", "group"}).exitCode, 0);
   const std::string table = readText(*folder_ / "out/study.tsv");
   EXPECT_NE(table.find("sub-half\tL\timplausible (segment): "), std::string::npos) << table;
-  EXPECT_NE(table.find("sub-whole\tL\tdone\t"), std::string::npos) << table;
+  for (const char* subject : {"whole", "flipped"}) {
+    EXPECT_NE(table.find("sub-" + std::string(subject) + "\tL\tdone\t"), std::string::npos)
+        << table;
+  }
 }
 
 /// The template's T1 as another animal's: turned by 10 degrees, moved, bent by 1.5 mm, shaded and

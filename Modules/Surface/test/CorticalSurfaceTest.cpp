@@ -353,12 +353,12 @@ TEST(CorticalSurface, MeanThicknessIsFreeOfSampling) {
     return mean;
   };
   const Volume<Label> labels = groovedLabels(19 * kPi / 180);
-  const double mean = meanOf(labels, 3000);
-  for (const int faces : {2000, 10000}) EXPECT_NEAR(meanOf(labels, faces), mean, 0.01) << faces;
+  const double mean = meanOf(labels, 12000);
+  for (const int faces : {5000, 40000}) EXPECT_NEAR(meanOf(labels, faces), mean, 0.01) << faces;
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(meanOf(turned(labels, axis), 3000), mean, 0.02) << axis;
+    EXPECT_NEAR(meanOf(turned(labels, axis), 12000), mean, 0.02) << axis;
   }
-  EXPECT_NEAR(meanOf(finer(labels, 3, 2), 3000), mean, 0.02);
+  EXPECT_NEAR(meanOf(finer(labels, 3, 2), 12000), mean, 0.02);
 }
 
 /// Brightness at signed distances to white matter's and the tissue's border, mm, positive inside,
@@ -393,8 +393,8 @@ TEST(CorticalSurface, MeanThicknessByAnImageIsFreeOfTheFaces) {
     std::printf("%d faces: mean thickness %.4f mm\n", faces, mean);
     return mean;
   };
-  const double mean = meanOf(3000);
-  for (const int faces : {2000, 10000}) EXPECT_NEAR(meanOf(faces), mean, 0.01) << faces;
+  const double mean = meanOf(12000);
+  for (const int faces : {3000, 40000}) EXPECT_NEAR(meanOf(faces), mean, 0.01) << faces;
 }
 
 /// Brightness of a shell seen through a point spread: white, grey, dark, and a bright vessel
