@@ -26,4 +26,14 @@ namespace explica::app {
     std::vector<report::FigureView> views, int columns, bool focus,
     const report::SurfacePictureOptions& options);
 
+/// Whether writeFilm() will be able to.
+/// @throws UsageError        neither .gif nor .mp4 nor .webm
+/// @throws EnvironmentError  ffmpeg is needed and not installed
+void requireFilmFormat(const std::filesystem::path& path);
+
+/// Writes .gif; .mp4 and .webm by ffmpeg.  Whole or not at all.
+/// @throws EnvironmentError  ffmpeg failed
+void writeFilm(const std::filesystem::path& path, const std::vector<report::Picture>& frames,
+               double framesPerSecond);
+
 }  // namespace explica::app

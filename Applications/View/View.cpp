@@ -13,7 +13,6 @@
 #include "Explica/Core/Folders.h"
 #include "Explica/Core/StopScope.h"
 #include "Explica/Core/Text.h"
-#include "Explica/Core/WholeFile.h"
 #include "Explica/IO/SurfaceFile.h"
 #include "Explica/IO/VertexDataFile.h"
 #include "Explica/IO/VertexFile.h"
@@ -72,8 +71,8 @@ void declare(Declaration& d, ViewSettings& s) {
       .category("Picture")
       .option("screenshot", "PNG file to write", s.screenshot)
       .option("film",
-              "film to write of a folder of `explica unfold`, a .gif; 800 x 600 pixels if --width "
-              "and --height do not say",
+              "film to write of a folder of `explica unfold`: .gif, or .mp4 or .webm where "
+              "ffmpeg is installed; 800 x 600 pixels if --width and --height do not say",
               s.film)
       .inputOption("map", FileKind::VertexData, "per-vertex values to colour the surface by", s.map)
       .option("map-name", "which of the map file's maps (default: the first)", s.mapName)
@@ -249,9 +248,7 @@ Termination run(Context& context, const ViewSettings& s, const ShowWindow& show)
     throw UsageError("--screenshot " + *s.screenshot + ": expected a name ending in .png");
   }
   if (s.film) {
-    if (std::filesystem::path(*s.film).extension() != ".gif") {
-      throw UsageError("--film " + *s.film + ": expected a name ending in .gif");
-    }
+    requireFilmFormat(*s.film);
     const std::filesystem::path folder = s.files.front();
     report::SurfacePictureOptions picture = s.picture;
     if (!context.given("width")) picture.width = 800;
@@ -260,8 +257,8 @@ Termination run(Context& context, const ViewSettings& s, const ShowWindow& show)
     if (s.map || s.labels) paint = readPaint(s, {firstFrame(folder), folder.string()});
     std::vector<report::FigureView> views;
     if (s.direction || !s.views.empty()) views = viewsOf(s, {});
-    const auto frames = drawFilm(folder, paint, std::move(views), s.columns, s.focus, picture);
-    writeTextFile(*s.film, report::encodeGif(frames, s.framesPerSecond));
+    writeFilm(*s.film, drawFilm(folder, paint, std::move(views), s.columns, s.focus, picture),
+              s.framesPerSecond);
     context.info("wrote " + *s.film);
   }
   if (s.screenshot) {

@@ -137,10 +137,41 @@ TEST(View, MakesAFilmOfFrames) {
 
   const auto other = explica({"view", folder / "u", "--film", folder / "u.avi"}, kNoDisplay);
   EXPECT_EQ(other.exitCode, 1) << other;
-  EXPECT_NE(other.err.find(".gif"), std::string::npos) << other;
+  EXPECT_NE(other.err.find(".webm"), std::string::npos) << other;
   const auto nothing =
       explica({"view", folder.path().string(), "--film", folder / "u.avi"}, kNoDisplay);
   EXPECT_EQ(nothing.err, other.err) << "before anything is read or drawn";
+}
+
+TEST(View, MakesFilmsOfEveryFormat) {
+  TemporaryFolder folder;
+  writeUnfoldedSphere(folder);
+  // An odd width, which the codecs of videos do not take as it is.
+  const auto film = [&](const std::string& name, const CommandSetting& setting = kNoDisplay) {
+    return explica(
+        {"view", folder / "u", "--width", "161", "--height", "120", "--film", folder / name},
+        setting);
+  };
+  const struct {
+    std::string name;
+    std::size_t at;
+    std::string magic;
+  } videos[] = {{"u.mp4", 4, "ftyp"}, {"u.webm", 0, "\x1a\x45\xdf\xa3"}};
+  for (const auto& video : videos) {
+    if (std::filesystem::exists("/usr/bin/ffmpeg")) {
+      const auto made = film(video.name);
+      ASSERT_EQ(made.exitCode, 0) << made;
+      EXPECT_EQ(readText(folder / video.name).substr(video.at, 4), video.magic) << video.name;
+      std::filesystem::remove(folder / video.name);
+    }
+    CommandSetting without = kNoDisplay;
+    without.environment["PATH"] = folder.path().string();
+    const auto refused = film(video.name, without);
+    EXPECT_EQ(refused.exitCode, 4) << refused;
+    EXPECT_NE(refused.err.find("ffmpeg is not installed; write a .gif"), std::string::npos)
+        << refused;
+    EXPECT_FALSE(std::filesystem::exists(folder / video.name));
+  }
 }
 
 TEST(View, SaysWhichMapIsMissing) {
