@@ -67,9 +67,8 @@ std::vector<Colour> coloursOf(const SurfacePaint& paint, Eigen::Index vertexCoun
   return colours;
 }
 
-Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width, int height) {
-  const Positions seen =
-      view.focus.empty() ? mesh.positions : Positions(mesh.positions(view.focus, Eigen::all));
+Camera cameraOf(const Positions& places, const FigureView& view, int width, int height) {
+  const Positions seen = view.focus.empty() ? places : Positions(places(view.focus, Eigen::all));
   Camera camera = view.name ? cameraFor(seen, *view.name, width, height)
                             : cameraTowards(seen, view.towards, view.up, width, height);
   if (!view.focus.empty()) camera.halfHeight *= 1.3;
@@ -84,8 +83,9 @@ std::vector<Picture> surfaceViews(const TriangleMesh& mesh, const SurfacePaint& 
   const bool discrete = paint.values.size() == 0 && paint.labels.size() != 0;
   std::vector<Picture> pictures;
   for (const FigureView& view : views) {
-    pictures.push_back(scene.render(cameraOf(mesh, view, options.width, options.height), colours,
-                                    discrete ? Filling::Discrete : Filling::Smooth, options));
+    pictures.push_back(scene.render(cameraOf(mesh.positions, view, options.width, options.height),
+                                    colours, discrete ? Filling::Discrete : Filling::Smooth,
+                                    options));
   }
   return pictures;
 }

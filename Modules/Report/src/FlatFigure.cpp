@@ -184,7 +184,7 @@ Canvas flatPanel(const TriangleMesh& mesh, const SurfacePaint& paint, const Flat
   Canvas canvas(options.width, options.height);
   canvas.layer("surfaces");
   canvas.image({0, 0}, {options.width, options.height}, picture);
-  const Camera camera = cameraOf(mesh, above, options.width, options.height);
+  const Camera camera = cameraOf(mesh.positions, above, options.width, options.height);
   const double scale = options.height / (2 * camera.halfHeight);  // pixels a millimetre
   const auto pixelOf = [&](const Point& p) {
     return Eigen::Vector2d(options.width / 2.0 + scale * (p.x() - camera.target.x()),

@@ -167,7 +167,7 @@ void glanceAtPatch(ResultFolder& results, const Unfolded& unfolded, const StepFo
   std::array<report::Camera, 2> cameras;
   double half = 0;
   for (std::size_t n = 0; n < meshes.size(); ++n) {
-    cameras[n] = report::cameraOf(*meshes[n], front, size.width, size.height);
+    cameras[n] = report::cameraOf(meshes[n]->positions, front, size.width, size.height);
     half = std::max(half, cameras[n].halfHeight);
   }
   const auto colours = report::coloursOf(paint, meshes[0]->vertexCount());

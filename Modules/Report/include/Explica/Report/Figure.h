@@ -52,7 +52,7 @@ struct FigureView {
                                     const std::vector<FigureView>& views, int columns,
                                     const SurfacePictureOptions& options = {});
 
-[[nodiscard]] Camera cameraOf(const TriangleMesh& mesh, const FigureView& view, int width,
+[[nodiscard]] Camera cameraOf(const Positions& places, const FigureView& view, int width,
                               int height);
 
 /// Slices through a volume with cut lines: one row for each direction, `count` evenly spaced ones
