@@ -595,37 +595,41 @@ TEST(Motion, HoweverOftenAPairIsPressedItDoesNotCrossInSinglePrecision) {
   EXPECT_TRUE(geometry::findSelfIntersections(mesh).empty());
 }
 
-/// Triangles one over the other, `gap` mm apart, and a last one far above them.
-TriangleMesh stacked(int count, double gap) {
+/// Triangles one over the other, such that the lowest, on its way up by 1, is stopped by the next
+/// at a quarter of it, both together by the third at a quarter of theirs, and so on; and one far
+/// off.
+TriangleMesh stacked(int count) {
   TriangleMesh mesh;
   mesh.positions.resize(3 * count, 3);
   mesh.faces.resize(count, 3);
+  double height = 0;
   for (int n = 0; n < count; ++n) {
-    const double z = n + 1 < count ? n * gap : 10;
+    const double z = n + 1 < count ? height : 10;
     mesh.positions.middleRows(3 * n, 3) << 0, 0, z, 1, 0, z, 0, 1, z;
     mesh.faces.row(n) << 3 * n, 3 * n + 1, 3 * n + 2;
+    height += 0.25 / (n + 1);
   }
   return mesh;
 }
 
 TEST(Motion, AJamHoldsUpNothingButItself) {
   const int count = 24;
-  const TriangleMesh mesh = stacked(count, 0.01);
+  const TriangleMesh mesh = stacked(count);
   const Region region = regionOfMarked(mesh, std::vector<bool>(3 * count, true));
   const PatchSetup setup =
       setUpPatch(mesh, region, visibility::viewpoint(Point(0, 0, 1000)), with(Surround::None));
   const Contacts contacts(setup, with(Surround::None));
   Motion motion;
   motion.by = Positions::Zero(mesh.vertexCount(), 3);
-  motion.by.topRows(3).col(2).setConstant(1);  // far beyond all others
+  motion.by.topRows(3).col(2).setConstant(1);
   motion.by.bottomRows(3).col(2).setConstant(1);
   const Positions asked = motion.by, gradient = -motion.by;
   findSafeStep(contacts, mesh.positions, motion);
-  ASSERT_LT(motion.safe, 0.02);
+  ASSERT_LT(motion.safe, kBlocked);
   clearWay(contacts, mesh.positions, setup.unknown, gradient, motion);
   EXPECT_GE(motion.safe, kBlocked);
   EXPECT_EQ(motion.by.bottomRows(3), asked.bottomRows(3));
-  EXPECT_GT(motion.by(0, 2), 0.001);
+  EXPECT_GT(motion.by(0, 2), 0.2);
   EXPECT_LT(motion.descent, 0);
 }
 
