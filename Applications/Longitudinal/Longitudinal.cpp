@@ -244,14 +244,14 @@ Termination run(Context& context, const LongitudinalSettings& s) {
   checkBeforehand(context, s);
   context.judged();
   Change change;
-  double voxel = 0;
-  {
-    auto step = context.step("sessions");
-    voxel = writeCommonSpace(context, s, sessions, atlas, change);
-  }
   Termination worst = Termination::Finished;
   Sums sums;
   try {
+    double voxel = 0;
+    {
+      auto step = context.step("sessions");
+      voxel = writeCommonSpace(context, s, sessions, atlas, change);
+    }
     worst = runAll(context, s);
     for (const MeasuredSide& side : sidesOf(s)) {
       measureChange(context, sessions.size(), side, personIn(context, s), voxel, sums);

@@ -6,6 +6,7 @@
 #include "Explica/Geometry/MeshMeasures.h"
 #include "Explica/IO/VolumeFile.h"
 #include "Explica/Testing/Meshes.h"
+#include "Explica/Testing/SmallDisk.h"
 #include "QuickRuns.h"
 
 #include <gtest/gtest.h>
@@ -397,6 +398,19 @@ TEST_F(Longitudinal, LeavesNothingWhenAStepFails) {
   EXPECT_EQ(result.exitCode, 2) << result;
   EXPECT_NE(result.err.find("no legend"), std::string::npos) << result;
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Longitudinal, LeavesNothingOnADiskThatFillsUpWithSessions) {
+  const SmallDisk disk(folder_ / "disk", "100k");
+  if (!disk.mounted()) GTEST_SKIP() << "skipped: this user may not mount a small file system";
+  ASSERT_EQ(explica({"phantom", "cortex", "--size", "32", "--spacing", "2", "--out", folder_ / "p"})
+                .exitCode,
+            0);
+  const std::string image = folder_ / "p/t1.nii.gz";
+  const auto result = explica({"longitudinal", image, image, "--template", "none", "--atlas",
+                               folder_ / "p/labels.nii.gz", "--out", folder_ / "disk/out"});
+  EXPECT_EQ(result.exitCode, 4) << result;
+  EXPECT_TRUE(fs::is_empty(folder_ / "disk")) << result;
 }
 
 struct Refusal {
