@@ -483,6 +483,9 @@ TEST(Unfolder, ACollarThatFollowsLetsARegionGoFurtherThanFixedWalls) {
     const Distortion d = measureDistortion(mesh, ends[follows].mesh.positions, region.faces);
     EXPECT_NEAR(ends[follows].history.back().edgeStrainMean, d.edgeStrainMean, 1e-12);
     EXPECT_NEAR(ends[follows].history.back().areaErrorMean, d.areaErrorMean, 1e-12);
+    const Eigen::VectorXd areas = geometry::faceAreas(mesh)(region.faces);
+    EXPECT_NEAR(ends[follows].history.back().areaErrorShare,
+                (d.areaRatio.array() - 1).abs().matrix().dot(areas) / areas.sum(), 1e-12);
     EXPECT_TRUE(geometry::findSelfIntersections(ends[follows].mesh).empty());
   }
   EXPECT_GT(ends[1].history.back().visibility, ends[0].history.back().visibility);
@@ -528,6 +531,40 @@ TEST(Unfold, AMissedGoalIsSaidThoughAreasAreNeverKept) {
   EXPECT_LT(result.history.size(), 200u);
   ASSERT_FALSE(said.empty());
   EXPECT_TRUE(said.back().starts_with("areas are off by")) << said.back();
+}
+
+/// The mesh with every `step`-th of the listed faces cut in three, one of them a needle on its
+/// first edge.
+TriangleMesh withNeedles(TriangleMesh mesh, std::span<const std::int32_t> faces, std::size_t step) {
+  for (std::size_t n = 0; n < faces.size(); n += step) {
+    const Eigen::Index v = mesh.vertexCount(), f = mesh.faceCount();
+    const std::int32_t a = mesh.faces(faces[n], 0), b = mesh.faces(faces[n], 1),
+                       c = mesh.faces(faces[n], 2), p = static_cast<std::int32_t>(v);
+    const Point place =
+        0.4995 * (mesh.positions.row(a) + mesh.positions.row(b)) + 0.001 * mesh.positions.row(c);
+    mesh.positions.conservativeResize(v + 1, 3);
+    mesh.positions.row(v) = place;
+    mesh.faces.conservativeResize(f + 2, 3);
+    mesh.faces.row(faces[n]) << a, b, p;
+    mesh.faces.row(f) << b, c, p;
+    mesh.faces.row(f + 1) << c, a, p;
+  }
+  return mesh;
+}
+
+TEST(Unfold, NeedlesDoNotDecideWhetherAreasAreKept) {
+  const Case c;
+  const TriangleMesh mesh = withNeedles(c.mesh, c.region.faces, 20);
+  std::vector<bool> inside(static_cast<std::size_t>(mesh.vertexCount()), true);
+  for (Eigen::Index v = 0; v < c.mesh.vertexCount(); ++v) inside[v] = false;
+  for (const std::int32_t v : c.region.vertices) inside[v] = true;
+  UnfoldOptions options;
+  options.unfolder = with(Surround::None);
+  const UnfoldResult result = unfold(mesh, regionOfMarked(mesh, inside), c.view, options);
+  const IterationRecord& end = result.history.back();
+  EXPECT_EQ(result.termination, Termination::Converged);
+  EXPECT_LE(end.areaErrorShare, options.areaTolerance);
+  EXPECT_GT(end.areaErrorMean, options.areaTolerance);
 }
 
 /// The case's sheet and, at the middle of one of the region's faces, the tip of a small fixed face
